@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "burnish/shading/transfer.h"
+
+namespace burnish {
+
+/// A triangle soup ready to be baked: every vertex has one normal and one tangent. A file vertex
+/// that has several normals or UVs (a hard edge, a seam) is several vertices here.
+struct TriangleMesh {
+  std::string name;                        ///< file name without its folder, or a scene's name
+  std::vector<Vector3f> positions;         ///< #V
+  std::vector<Vector3f> normals;           ///< #V, unit
+  std::vector<Vector3f> tangents;          ///< #V, unit, orthogonal to the normal
+  std::vector<Eigen::Vector2f> uvs;        ///< #V, or empty
+  std::vector<std::uint32_t> file_vertex;  ///< #V, index of the vertex in the mesh file
+  std::vector<Triangle> triangles;         ///< #F
+};
+
+}  // namespace burnish

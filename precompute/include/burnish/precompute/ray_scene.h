@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "burnish/shading/transfer.h"
+
+namespace burnish {
+
+/// The nearest hit of a ray.
+struct RayHit {
+  std::uint32_t mesh;      ///< index in the order of add_mesh
+  std::uint32_t triangle;  ///< index in that mesh
+  float u, v;              ///< barycentric: position = (1 - u - v) p0 + u p1 + v p2
+  float distance;          ///< world units
+};
+
+/// Triangle meshes to cast rays at. Coordinates are world units at every call; inside, the scene is
+/// moved and scaled to unit size, so that a mesh of size 1e-6 and one of size 1e6 behave alike.
+/// Building throws burnish::Error; the queries are thread-safe and do not throw.
+class RayScene {
+ public:
+  RayScene();
+  ~RayScene();
+  RayScene(RayScene&&) noexcept;
+  RayScene& operator=(RayScene&&) noexcept;
+
+  /// Copies the mesh. Call before commit(). Indices must be below positions.size().
+  void add_mesh(std::span<const Vector3f> positions, std::span<const Triangle> triangles);
+  void commit();
+
+  /// Distance, in world units, by which a ray's origin should leave a surface: scales with the
+  /// scene.
+  float origin_offset() const;
+
+  /// First hit along a unit direction. Returns false, and leaves `hit`, if there is none.
+  bool intersect(const Vector3f& origin, const Vector3f& direction, RayHit& hit) const;
+
+  /// Whether anything lies along a unit direction nearer than `max_distance` (infinity for distant
+  /// lights).
+  bool occluded(const Vector3f& origin, const Vector3f& direction, float max_distance) const;
+
+  /// Sixteen coherent rays from one origin; `x`, `y`, `z` hold the unit directions' components,
+  /// 64-byte aligned. Bit i of the result is set where direction i is occluded; bits not in
+  /// `active` are 0.
+  std::uint32_t occluded16(const Vector3f& origin, const float* x, const float* y, const float* z,
+                           std::uint32_t active) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace burnish

@@ -1,0 +1,1 @@
+#include "burnish/precompute/ray_scene.h"

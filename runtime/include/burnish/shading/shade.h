@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "burnish/light/light_rig.h"
+#include "burnish/light/prefiltered_environment.h"
+#include "burnish/material/material.h"
+#include "burnish/shading/transfer.h"
+#include "burnish/sphere/half_space.h"
+
+namespace burnish {
+
+/// How the cosine of the diffuse term is taken.
+enum class CosineModel {
+  constant,            ///< at the lobe's axis, out of the integral (xu2013asg, Eq. 29)
+  horizon_normalised,  ///< unshadowed cosine integral times visible fraction over horizon fraction
+};
+
+/// Speed for accuracy. The defaults are ours; VisibilityModel::hemisphere with
+/// CosineModel::constant is the paper's method.
+struct ShadingOptions {
+  VisibilityModel visibility = VisibilityModel::directional;
+  CosineModel cosine = CosineModel::horizon_normalised;
+  AsgIntegral integral = AsgIntegral::exact;
+  int terms = 0;              ///< PCA terms used, 1..baked; 0: all that were baked
+  int environment_taps = 16;  ///< at most, along the long axis of a specular lobe, 1..64
+};
+
+/// What lights a frame. Both refer to the world frame; `environment` may be null, then the specular
+/// term sees the rig's lobes instead of the map.
+struct Lighting {
+  const LightRig* rig = nullptr;  ///< never null
+  const PrefilteredEnvironment* environment = nullptr;
+};
+
+/// One point to shade.
+struct ShadingPoint {
+  Vector3f position;
+  Frame<float> frame;                   ///< x tangent, z shading normal
+  const SsdfBasis* basis = nullptr;     ///< null: nothing occludes but the horizon
+  const float* coefficients = nullptr;  ///< [basis->terms]
+};
+
+/// Outgoing radiance of a point toward a unit direction, W sr^-1 m^-2 up to the lights' own scale.
+/// Zero where `outgoing` is below the horizon.
+Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing, const Material& material,
+                const Lighting& lighting, const ShadingOptions& options) noexcept;
+
+/// The shading point of a vertex of a transfer.
+ShadingPoint vertex_shading_point(const Transfer& transfer, size_t vertex) noexcept;
+
+/// Radiance of the vertices [first, first + radiance.size()) toward `eye`. `material_id` has an
+/// entry per vertex of the transfer, or is empty: then all have materials[0]. Call it from as many
+/// threads as you like, on ranges that do not overlap. Vertices that face away from the eye are
+/// shaded as seen from just above their horizon, so that interpolation across a silhouette does not
+/// darken.
+void shade_vertices(const Transfer& transfer, const Lighting& lighting,
+                    std::span<const Material> materials, std::span<const std::uint8_t> material_id,
+                    const Vector3f& eye, const ShadingOptions& options, size_t first,
+                    std::span<Rgb> radiance) noexcept;
+
+}  // namespace burnish
