@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "burnish/light/light_rig.h"
 #include "burnish/light/prefiltered_environment.h"
@@ -24,14 +25,31 @@ struct ShadingOptions {
   CosineModel cosine = CosineModel::horizon_normalised;
   AsgIntegral integral = AsgIntegral::exact;
   int terms = 0;              ///< PCA terms used, 1..baked; 0: all that were baked
-  int environment_taps = 16;  ///< at most, along the long axis of a specular lobe, 1..64
+  int environment_taps = 32;  ///< at most, along the long axis of a specular lobe, 1..64
 };
 
-/// What lights a frame. Both refer to the world frame; `environment` may be null, then the specular
-/// term sees the rig's lobes instead of the map.
+/// A lobe of light with what shading needs of its shape: prepared once per change of the lights.
+struct PreparedLobe {
+  AnisotropicGaussian<float> lobe;  ///< unit amplitude
+  Rgb color = Rgb::Zero();          ///< radiance at the axis
+  float integral = 0;               ///< of the unit-amplitude lobe
+  float mean_z = 0;                 ///< moments of the normalised lobe in its own frame
+  float mean_xx = 0, mean_yy = 0, variance_z = 0;
+};
+
+/// Lights ready for shading. Immutable while shading, and may be shared between threads.
+struct PreparedLights {
+  std::vector<PreparedLobe> lobes;
+  std::vector<SphereLight> spheres;
+};
+
+PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options);
+
+/// What lights a frame, in the world's frame. Without an environment the specular term sees the
+/// lights' lobes instead of the map.
 struct Lighting {
-  const LightRig* rig = nullptr;  ///< never null
-  const PrefilteredEnvironment* environment = nullptr;
+  const PreparedLights* lights = nullptr;               ///< never null
+  const PrefilteredEnvironment* environment = nullptr;  ///< may be null
 };
 
 /// One point to shade.
