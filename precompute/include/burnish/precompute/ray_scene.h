@@ -17,7 +17,17 @@ struct RayHit {
 };
 
 /// Triangle meshes to cast rays at. Coordinates are world units at every call; inside, the scene is
-/// moved and scaled to unit size, so that a mesh of size 1e-6 and one of size 1e6 behave alike.
+/// moved and scaled to unit size (by a power of two), so that a mesh of size 1e-6 and one of size
+/// 1e6 behave alike. Triangles are hit from both sides.
+///
+/// - A triangle with a corner that is not finite, or beyond 1e30 on some axis, is never hit; nor is
+///   one without area. Both keep their number.
+/// - A ray whose origin is not finite (in scene units) hits nothing; nor does any ray in a scene
+/// that has no
+///   triangles or was not committed.
+/// - No ray passes between two triangles that share an edge; one aimed at a shared corner to within
+///   float rounding may (Embree's robust mode leaves that crack).
+///
 /// Building throws burnish::Error; the queries are thread-safe and do not throw.
 class RayScene {
  public:
@@ -26,12 +36,15 @@ class RayScene {
   RayScene(RayScene&&) noexcept;
   RayScene& operator=(RayScene&&) noexcept;
 
-  /// Copies the mesh. Call before commit(). Indices must be below positions.size().
+  /// Copies the mesh. Call before commit(). Throws Error when an index is not below
+  /// positions.size().
   void add_mesh(std::span<const Vector3f> positions, std::span<const Triangle> triangles);
+
+  /// Builds the scene; call once.
   void commit();
 
-  /// Distance, in world units, by which a ray's origin should leave a surface: scales with the
-  /// scene.
+  /// Distance, in world units, by which a ray's origin should leave a surface: 2^-16 of the scene's
+  /// size, and never less than what a coordinate of the scene can resolve. 0 before commit().
   float origin_offset() const;
 
   /// First hit along a unit direction. Returns false, and leaves `hit`, if there is none.
