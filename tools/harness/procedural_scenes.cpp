@@ -1,0 +1,117 @@
+#include "harness/procedural_scenes.h"
+
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "burnish/formats/error.h"
+#include "harness/shapes.h"
+
+namespace burnish {
+namespace {
+
+/// Gives a material to all vertices that have none yet.
+void paint(ProceduralScene& scene, const Material& material) {
+  const auto id = static_cast<std::uint8_t>(scene.materials.size());
+  scene.materials.push_back(material);
+  scene.material_id.resize(scene.mesh.positions.size(), id);
+}
+
+Material diffuse(const Rgb& albedo) { return {.diffuse = albedo, .specular = Rgb::Zero()}; }
+
+const Rgb kFloorAlbedo(0.42f, 0.40f, 0.37f);
+
+ProceduralScene dish() {
+  ProceduralScene scene;
+  // The gap is far below a floor cell: the dish seems to stand, and no two surfaces coincide.
+  append_dish(scene.mesh, 0.004, 0.03, 160);
+  paint(scene, {.diffuse = Rgb(0.05f, 0.045f, 0.04f),
+                .specular = Rgb(0.55f, 0.50f, 0.42f),
+                .model = SpecularModel::ward,
+                .alpha_x = 0.3f,
+                .alpha_y = 0.03f});
+  append_floor(scene.mesh, 2.5, 100, 0.5);
+  paint(scene, diffuse(kFloorAlbedo));
+  scene.camera = {Vector3f(0.0f, 1.75f, 2.45f), Vector3f(0.0f, 0.04f, 0.05f), Vector3f::UnitY(),
+                  42};
+  return scene;
+}
+
+ProceduralScene sphere() {
+  ProceduralScene scene;
+  append_sphere(scene.mesh, Vector3f(0, 1.1f, 0), 1.0, 80, 44);
+  paint(scene, {.diffuse = Rgb(0.1f, 0.12f, 0.15f),
+                .specular = Rgb(0.4f, 0.4f, 0.4f),
+                .model = SpecularModel::ward,
+                .alpha_x = 0.3f,
+                .alpha_y = 0.1f});
+  append_floor(scene.mesh, 4.0, 50, 0.5);
+  paint(scene, diffuse(kFloorAlbedo));
+  scene.camera = {Vector3f(1.2f, 2.6f, 4.8f), Vector3f(0.0f, 0.8f, 0.0f), Vector3f::UnitY(), 42};
+  return scene;
+}
+
+ProceduralScene plane() {
+  ProceduralScene scene;
+  append_floor(scene.mesh, 1.0, 32, 1.0);
+  paint(scene, {.diffuse = Rgb(0.3f, 0.3f, 0.3f),
+                .specular = Rgb(0.2f, 0.2f, 0.2f),
+                .model = SpecularModel::ward,
+                .alpha_x = 0.3f,
+                .alpha_y = 0.1f});
+  scene.camera = {Vector3f(0.0f, 1.2f, 2.2f), Vector3f(0, 0, 0), Vector3f::UnitY(), 40};
+  return scene;
+}
+
+ProceduralScene wall() {
+  ProceduralScene scene;
+  append_floor(scene.mesh, 2.0, 48, 1.0);
+  paint(scene, diffuse(kFloorAlbedo));
+  // Stands on the floor but for a gap, at z = -0.5, and looks to +z.
+  append_rectangle(scene.mesh, Vector3f(-1.0f, 0.002f, -0.5f), Vector3f(2, 0, 0),
+                   Vector3f(0, 1.2f, 0), 50, 30);
+  paint(scene, diffuse(Rgb(0.55f, 0.25f, 0.2f)));
+  scene.camera = {Vector3f(1.6f, 1.7f, 3.0f), Vector3f(0, 0.35f, -0.3f), Vector3f::UnitY(), 45};
+  return scene;
+}
+
+ProceduralScene knot() {
+  ProceduralScene scene;
+  append_torus_knot(scene.mesh, Vector3f(0, 0.62f, 0), 1.0, 0.4, 0.18, 1100, 40);
+  paint(scene, {.diffuse = Rgb(0.25f, 0.1f, 0.06f),
+                .specular = Rgb(0.3f, 0.3f, 0.3f),
+                .model = SpecularModel::ward,
+                .alpha_x = 0.1f,
+                .alpha_y = 0.2f});
+  append_floor(scene.mesh, 3.0, 99, 0.5);
+  paint(scene, diffuse(kFloorAlbedo));
+  scene.camera = {Vector3f(0.0f, 2.9f, 3.6f), Vector3f(0, 0.35f, 0), Vector3f::UnitY(), 42};
+  return scene;
+}
+
+constexpr std::array<std::pair<const char*, ProceduralScene (*)()>, 5> kScenes = {
+    {{"dish", dish}, {"sphere", sphere}, {"plane", plane}, {"wall", wall}, {"knot", knot}}};
+
+}  // namespace
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, make] : kScenes) names.emplace_back(name);
+  return names;
+}
+
+ProceduralScene make_scene(std::string_view name) {
+  for (const auto& [known, make] : kScenes) {
+    if (name != known) continue;
+    ProceduralScene scene = make();
+    scene.name = scene.mesh.name = known;
+    return scene;
+  }
+  throw Error(
+      ErrorKind::input, std::string(name),
+      fmt::format("no such procedural scene, expected one of {}", fmt::join(scene_names(), ", ")));
+}
+
+}  // namespace burnish

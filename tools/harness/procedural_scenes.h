@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "burnish/formats/triangle_mesh.h"
+#include "burnish/material/material.h"
+#include "harness/camera.h"
+
+namespace burnish {
+
+/// A scene that needs no file: +y is up, the unit is about the size of the object.
+struct ProceduralScene {
+  std::string name;
+  TriangleMesh mesh;                      ///< named like the scene
+  std::vector<Material> materials;        ///< one or more
+  std::vector<std::uint8_t> material_id;  ///< #V, index into materials; equal within a triangle
+  Camera camera;                          ///< a view that shows what the scene is for
+};
+
+/// Names of all scenes, in a fixed order:
+/// - dish: a brushed dish on a floor, 25k vertices, the shape of xu2013asg, Fig. 1. Each body is
+///   closed but the floor; tangents run across the grooves, and so does alpha_x.
+/// - sphere: a brushed sphere above a floor, 6k vertices
+/// - plane: a glossy floor and nothing else: nothing occludes
+/// - wall: a diffuse floor before a diffuse wall
+/// - knot: a glossy torus knot over a floor, 54k vertices
+std::vector<std::string> scene_names();
+
+/// Throws Error for a name that scene_names() does not have.
+ProceduralScene make_scene(std::string_view name);
+
+}  // namespace burnish
