@@ -1,0 +1,253 @@
+#include "burnish/shading/shade.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "burnish/light/lobe_moments.h"
+#include "burnish/material/spherical_warp.h"
+#include "burnish/visibility/ssdf.h"
+
+// Based on: xu2013asg, section 6 (Eq. 29, 30), over the SSDF visibility of wang2009svbrdf. Where we
+// differ: the visible fraction takes the boundary's direction into account, and the diffuse cosine
+// belongs to the integral (docs/maths.md, "Diffuse term").
+namespace burnish {
+namespace {
+
+// Below this cosine between normal and view, a vertex is shaded as seen at it: the BRDFs have poles
+// at the horizon.
+constexpr float kMinViewCosine = 0.02f;
+
+/// What is seen of the surroundings of a point.
+class PointVisibility {
+ public:
+  PointVisibility(const ShadingPoint& point, const ShadingOptions& options) : point_(point) {
+    if (!point.basis) return;
+    const int baked = point.basis->terms;
+    terms_ = options.terms > 0 ? std::min(options.terms, baked) : baked;
+  }
+
+  /// Signed distance to the nearest boundary. Without a bake, that is the horizon.
+  SsdfSample lookup(const Vector3f& direction) const {
+    if (!point_.basis) return horizon(direction);
+    return lookup_ssdf(*point_.basis, point_.coefficients, terms_, direction);
+  }
+
+  SsdfSample horizon(const Vector3f& direction) const {
+    const Vector3f& normal = point_.frame.z;
+    const float sine = std::clamp(normal.dot(direction), -1.0f, 1.0f);
+    const Vector3f gradient = normal - sine * direction;
+    const float length = gradient.norm();
+    return {std::asin(sine), length > 1e-6f ? Vector3f(gradient / length) : Vector3f::Zero()};
+  }
+
+  bool only_horizon() const { return point_.basis == nullptr; }
+
+ private:
+  const ShadingPoint& point_;
+  int terms_ = 0;
+};
+
+/// Where the product of a lobe and the clamped cosine peaks, and how wide it is there, as a lobe
+/// without amplitude. The cosine is exp(kCosineSharpness n.v) up to a factor.
+AnisotropicGaussian<float> lobe_times_cosine(const AnisotropicGaussian<float>& lobe,
+                                             const Vector3f& normal) {
+  constexpr float kCosineSharpness =
+      2.133f;  // least-squares SG of the clamped cosine (wang2009svbrdf)
+  const Vector3f n = kCosineSharpness * lobe.frame.to_local(normal);
+  const float two_x = 2 * lobe.bandwidth_x, two_y = 2 * lobe.bandwidth_y;
+  // Maximum of log z - b_x x^2 - b_y y^2 + n.v on the unit sphere, by its Lagrange multiplier:
+  // |v(m)| = 1, |v| falls with m. Newton in log m from a start below the root; the result is
+  // normalised anyway.
+  float multiplier = 2.5f;
+  Vector3f v = Vector3f::UnitZ();
+  for (int i = 0; i < 4; ++i) {
+    const float root = std::sqrt(n.z() * n.z() + 4 * multiplier);
+    v = {n.x() / (two_x + multiplier), n.y() / (two_y + multiplier),
+         (n.z() + root) / (2 * multiplier)};
+    const float dz = (1 / root - v.z()) / multiplier;
+    const float slope =
+        -v.x() * v.x() / (two_x + multiplier) - v.y() * v.y() / (two_y + multiplier) + v.z() * dz;
+    const float step = (v.squaredNorm() - 1) / std::max(-2 * slope, 1e-6f);
+    multiplier = std::clamp(multiplier + step, 0.3f * multiplier, 3 * multiplier);
+  }
+  v.normalize();
+
+  AnisotropicGaussian<float> result;
+  const Frame<float> tangent = frame_from_axis(v);
+  // Curvature of the exponent in the tangent plane; an ASG's smooth term accounts for 1 of it.
+  const Vector3f diagonal(two_x, two_y, 1 / std::max(v.z() * v.z(), 1e-4f));
+  const float xx = tangent.x.dot(diagonal.cwiseProduct(tangent.x)) + multiplier;
+  const float yy = tangent.y.dot(diagonal.cwiseProduct(tangent.y)) + multiplier;
+  const float xy = tangent.x.dot(diagonal.cwiseProduct(tangent.y));
+  const float half_difference = (xx - yy) / 2;
+  const float radius = std::hypot(half_difference, xy);
+  const float angle = 0.5f * std::atan2(xy, half_difference);
+  const Vector3f major = std::cos(angle) * tangent.x + std::sin(angle) * tangent.y;
+  const Frame<float> local = {major, v.cross(major), v};
+  result.frame = {lobe.frame.to_world(local.x), lobe.frame.to_world(local.y),
+                  lobe.frame.to_world(local.z)};
+  result.bandwidth_x = std::max(((xx + yy) / 2 + radius - 1) / 2, 0.05f);
+  result.bandwidth_y = std::max(((xx + yy) / 2 - radius - 1) / 2, 0.05f);
+  return result;
+}
+
+/// Integral of the lobe (unit amplitude) times visibility times the clamped cosine.
+float diffuse_integral(const PreparedLobe& light, const ShadingPoint& point,
+                       const PointVisibility& visibility, const ShadingOptions& options) {
+  const Vector3f& normal = point.frame.z;
+  if (options.cosine == CosineModel::constant) {  // Eq. 29
+    const float cosine = normal.dot(light.lobe.frame.z);
+    if (cosine <= 0) return 0;
+    const SsdfSample boundary = visibility.lookup(light.lobe.frame.z);
+    return cosine * light.integral *
+           visible_fraction(options.visibility, light.lobe, boundary.distance, boundary.gradient);
+  }
+  const LobeMoments<float> moments{light.mean_z, light.mean_xx, light.mean_yy, light.variance_z};
+  const float unshadowed =
+      light.integral * mean_clamped_cosine(moments, light.lobe.frame.to_local(normal));
+  if (unshadowed <= 0 || visibility.only_horizon()) return unshadowed;
+  const AnisotropicGaussian<float> lit = lobe_times_cosine(light.lobe, normal);
+  const SsdfSample boundary = visibility.lookup(lit.frame.z);
+  const SsdfSample horizon = visibility.horizon(lit.frame.z);
+  const float seen =
+      visible_fraction(options.visibility, lit, boundary.distance, boundary.gradient);
+  const float above = visible_fraction(options.visibility, lit, horizon.distance, horizon.gradient);
+  // Both vanish together where the lobe is far below the horizon; there the integral does, too.
+  return unshadowed * (seen < above ? seen / above : 1.0f);
+}
+
+/// A sphere as the lobe it covers from a point: the spherical Gaussian of the same mean cosine and
+/// energy. From inside the sphere it is the whole sphere of directions.
+PreparedLobe lobe_from_sphere(const SphereLight& sphere, const Vector3f& position) {
+  const Vector3f to_center = sphere.center - position;
+  const float distance = to_center.norm();
+  const float sine = distance > sphere.radius ? sphere.radius / distance : 1.0f;
+  const bool inside = distance <= sphere.radius;
+  // 1 - cos of the cap's edge, without its cancellation for small spheres.
+  const float cos_edge = inside ? -1.0f : std::sqrt(std::max(1 - sine * sine, 0.0f));
+  const float height = inside ? 2.0f : sine * sine / (1 + cos_edge);
+  // A zero mean cosine (inside) would be sharpness 0; the mean resultant length r gives it by r (3
+  // - r^2) / (1 - r^2), within 1 % of the exact inverse.
+  const float r = 1 - height / 2;
+  const float one_minus_r2 = height * (1 - height / 4);
+  const float sharpness = r * (3 - r * r) / std::max(one_minus_r2, 1e-12f);
+  PreparedLobe prepared;
+  prepared.lobe.frame =
+      frame_from_axis(distance > 0 ? Vector3f(to_center / distance) : Vector3f::UnitZ());
+  prepared.lobe.bandwidth_x = prepared.lobe.bandwidth_y = sharpness / 2;
+  const float solid_angle = 2 * kPi<float> * height;
+  // Normalised so that amplitude-one integral times colour is radiance times solid angle.
+  prepared.integral = asg_integral_exact(sharpness / 2, sharpness / 2);
+  prepared.color = sphere.radiance * (solid_angle / prepared.integral);
+  const LobeMoments<float> moments = cap_moments(cos_edge);
+  prepared.mean_z = moments.mean_z;
+  prepared.mean_xx = moments.mean_xx;
+  prepared.mean_yy = moments.mean_yy;
+  prepared.variance_z = height * height / 12;
+  return prepared;
+}
+
+/// Integral of the lobes' radiance times a BRDF lobe.
+Rgb light_from_lobes(const Lighting& lighting, const AnisotropicGaussian<float>& brdf_lobe,
+                     const ShadingOptions& options) {
+  Rgb sum = Rgb::Zero();
+  for (const PreparedLobe& light : lighting.lights->lobes)
+    sum += light.color * integral(product(light.lobe, brdf_lobe), options.integral);
+  return sum;
+}
+
+/// The specular term, Eq. 30.
+Rgb specular_radiance(const ShadingPoint& point, const Vector3f& outgoing, const Material& material,
+                      const Lighting& lighting, const PointVisibility& visibility,
+                      const ShadingOptions& options) {
+  AnisotropicGaussian<float> half_lobe = specular_lobe(material);
+  half_lobe.frame = point.frame;
+  const AnisotropicGaussian<float> lobe = warp_to_incoming(half_lobe, outgoing);
+  const float cosine = lobe.frame.z.dot(point.frame.z);
+  if (lobe.amplitude <= 0 || cosine <= 0) return Rgb::Zero();
+  const SsdfSample boundary = visibility.lookup(lobe.frame.z);
+  const float visible =
+      visible_fraction(options.visibility, lobe, boundary.distance, boundary.gradient);
+  if (visible <= 0) return Rgb::Zero();
+
+  Rgb light = lighting.environment
+                  ? Rgb(eval_prefiltered(*lighting.environment, lobe, options.environment_taps) *
+                        integral(lobe, options.integral))
+                  : light_from_lobes(lighting, lobe, options);
+  for (const SphereLight& sphere : lighting.lights->spheres) {
+    const PreparedLobe prepared = lobe_from_sphere(sphere, point.position);
+    light += prepared.color * integral(product(prepared.lobe, lobe), options.integral);
+  }
+  const Rgb smooth = specular_smooth_factor(material, point.frame.to_local(outgoing),
+                                            point.frame.to_local(lobe.frame.z));
+  return smooth * light * (cosine * visible);
+}
+
+}  // namespace
+
+PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options) {
+  PreparedLights prepared;
+  prepared.spheres = rig.spheres;
+  prepared.lobes.reserve(rig.lobes.size());
+  for (const EnvironmentLobe& light : rig.lobes) {
+    const LobeMoments<double> m = asg_moments(light.lobe.bandwidth_x, light.lobe.bandwidth_y);
+    PreparedLobe lobe;
+    lobe.lobe = light.lobe;
+    lobe.lobe.amplitude = 1;
+    lobe.color = light.color * light.lobe.amplitude;
+    lobe.integral = integral(lobe.lobe, options.integral);
+    lobe.mean_z = static_cast<float>(m.mean_z);
+    lobe.mean_xx = static_cast<float>(m.mean_xx);
+    lobe.mean_yy = static_cast<float>(m.mean_yy);
+    lobe.variance_z = static_cast<float>(m.variance_z);
+    prepared.lobes.push_back(lobe);
+  }
+  return prepared;
+}
+
+Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing, const Material& material,
+                const Lighting& lighting, const ShadingOptions& options) noexcept {
+  if (outgoing.dot(point.frame.z) <= 0) return Rgb::Zero();
+  const PointVisibility visibility(point, options);
+  Rgb irradiance = Rgb::Zero();
+  if ((material.diffuse > 0).any()) {
+    for (const PreparedLobe& light : lighting.lights->lobes)
+      irradiance += light.color * diffuse_integral(light, point, visibility, options);
+    for (const SphereLight& sphere : lighting.lights->spheres) {
+      const PreparedLobe light = lobe_from_sphere(sphere, point.position);
+      irradiance += light.color * diffuse_integral(light, point, visibility, options);
+    }
+  }
+  Rgb radiance = material.diffuse / kPi<float> * irradiance;
+  if (material.has_specular())
+    radiance += specular_radiance(point, outgoing, material, lighting, visibility, options);
+  return radiance;
+}
+
+ShadingPoint vertex_shading_point(const Transfer& transfer, size_t vertex) noexcept {
+  ShadingPoint point;
+  point.position = transfer.positions[vertex];
+  point.frame = frame_from_normal_tangent(transfer.normals[vertex], transfer.tangents[vertex]);
+  if (transfer.bases.empty()) return point;
+  point.basis = &transfer.bases[transfer.basis_id[vertex]];
+  point.coefficients = transfer.vertex_coefficients(vertex);
+  return point;
+}
+
+void shade_vertices(const Transfer& transfer, const Lighting& lighting,
+                    std::span<const Material> materials, std::span<const std::uint8_t> material_id,
+                    const Vector3f& eye, const ShadingOptions& options, size_t first,
+                    std::span<Rgb> radiance) noexcept {
+  for (size_t i = 0; i < radiance.size(); ++i) {
+    const size_t vertex = first + i;
+    const ShadingPoint point = vertex_shading_point(transfer, vertex);
+    const Material& material = materials[material_id.empty() ? 0 : material_id[vertex]];
+    Vector3f outgoing = (eye - point.position).normalized();
+    const float cosine = outgoing.dot(point.frame.z);
+    if (cosine < kMinViewCosine)
+      outgoing = (outgoing + (kMinViewCosine - cosine) * point.frame.z).normalized();
+    radiance[i] = shade_point(point, outgoing, material, lighting, options);
+  }
+}
+
+}  // namespace burnish
