@@ -22,7 +22,9 @@ template <class T>
 T visible_fraction_cap(T sharpness, T distance) {
   if (distance <= 0) return 0;
   const T height = 1 - std::cos(std::min(distance, kPi<T>));
-  return height * one_minus_exp_over(sharpness * height) / (2 * one_minus_exp_over(2 * sharpness));
+  return std::min(
+      height * one_minus_exp_over(sharpness * height) / (2 * one_minus_exp_over(2 * sharpness)),
+      T(1));
 }
 
 /// Fraction of a spherical Gaussian on the visible side of a great circle: absolute error 2.4e-3
@@ -52,8 +54,11 @@ T visible_fraction_directional(T bandwidth_across, T distance) {
   const T s = std::abs(std::sin(theta));
   const T root = std::sqrt(bandwidth_across);
   const T whole = std::erf(root);
-  const T hidden = whole > 0 ? std::max((std::erfc(root * s) - std::erfc(root)) / (2 * whole), T(0))
-                             : (1 - s) / 2;
+  if (!(whole > 0)) return (1 + std::copysign(s, theta)) / 2;
+  // The hidden tail: a difference of erfs for wide lobes, of erfcs for narrow ones, so that neither
+  // cancels.
+  const T tail = root < T(0.5) ? whole - std::erf(root * s) : std::erfc(root * s) - std::erfc(root);
+  const T hidden = std::max(tail / (2 * whole), T(0));
   return theta >= 0 ? 1 - hidden : hidden;
 }
 
