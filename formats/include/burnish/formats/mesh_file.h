@@ -12,6 +12,9 @@ namespace burnish {
 
 struct MeshReadOptions {
   UpAxis up = UpAxis::y;  ///< for the tangents of surfaces without UVs
+  /// Where normals are computed: file vertices at one point share a normal if their own differ by
+  /// less than this (a seam of patches or UVs), and keep their own if not (a hard edge). 0: never.
+  float seam_angle_rad = kPi<float> / 6;
 };
 
 /// What a mesh file contains and what became of it.
