@@ -13,10 +13,6 @@
 namespace burnish {
 namespace {
 
-// Below this cosine between normal and view, a vertex is shaded as seen at it: the BRDFs have poles
-// at the horizon.
-constexpr float kMinViewCosine = 0.02f;
-
 /// What is seen of the surroundings of a point.
 class PointVisibility {
  public:
@@ -242,10 +238,8 @@ void shade_vertices(const Transfer& transfer, const Lighting& lighting,
     const size_t vertex = first + i;
     const ShadingPoint point = vertex_shading_point(transfer, vertex);
     const Material& material = materials[material_id.empty() ? 0 : material_id[vertex]];
-    Vector3f outgoing = (eye - point.position).normalized();
-    const float cosine = outgoing.dot(point.frame.z);
-    if (cosine < kMinViewCosine)
-      outgoing = (outgoing + (kMinViewCosine - cosine) * point.frame.z).normalized();
+    const Vector3f outgoing =
+        lift_above_horizon((eye - point.position).normalized(), point.frame.z);
     radiance[i] = shade_point(point, outgoing, material, lighting, options);
   }
 }

@@ -68,11 +68,20 @@ Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing, const Mater
 /// The shading point of a vertex of a transfer.
 ShadingPoint vertex_shading_point(const Transfer& transfer, size_t vertex) noexcept;
 
+/// A view from below a normal's horizon, or less than kMinViewCosine above it, lifted to just above
+/// it; any other view unchanged. The BRDFs have poles at the horizon, and smooth normals face away
+/// at silhouettes.
+inline constexpr float kMinViewCosine = 0.02f;
+inline Vector3f lift_above_horizon(const Vector3f& outgoing, const Vector3f& normal) {
+  const float cosine = outgoing.dot(normal);
+  if (cosine >= kMinViewCosine) return outgoing;
+  return (outgoing + (kMinViewCosine - cosine) * normal).normalized();
+}
+
 /// Radiance of the vertices [first, first + radiance.size()) toward `eye`. `material_id` has an
 /// entry per vertex of the transfer, or is empty: then all have materials[0]. Call it from as many
 /// threads as you like, on ranges that do not overlap. Vertices that face away from the eye are
-/// shaded as seen from just above their horizon, so that interpolation across a silhouette does not
-/// darken.
+/// shaded by lift_above_horizon, so that interpolation across a silhouette does not darken.
 void shade_vertices(const Transfer& transfer, const Lighting& lighting,
                     std::span<const Material> materials, std::span<const std::uint8_t> material_id,
                     const Vector3f& eye, const ShadingOptions& options, size_t first,

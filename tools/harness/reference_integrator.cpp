@@ -1,0 +1,303 @@
+#include "harness/reference_integrator.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "harness/parallel_progress.h"
+
+namespace burnish {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Pairs of dimensions of a sample.
+enum : std::uint32_t { kEnvironmentPair, kBrdfPair, kChoicePair, kFirstSpherePair };
+
+/// Into [0, 1) as float: rounding a double just below one would give one.
+float below_one(double uniform) {
+  return std::min(static_cast<float>(uniform), std::nextafter(1.0f, 0.0f));
+}
+
+Vector3f sample_cosine(const Uniform2& uniform) {
+  const double radius = std::sqrt(uniform.u), angle = 2 * kPi<double> * uniform.v;
+  return Vector3d(radius * std::cos(angle), radius * std::sin(angle), std::sqrt(1 - uniform.u))
+      .cast<float>();
+}
+
+/// Density of the BRDF technique, per sr.
+double brdf_pdf(const ReferenceIntegrator::Point& point, const Vector3f& incoming) {
+  double pdf = point.diffuse_chance * std::max(double(incoming.z()), 0.0) / kPi<double>;
+  if (point.diffuse_chance < 1)
+    pdf += (1 - point.diffuse_chance) *
+           double(pdf_specular_brdf(*point.material, point.local_outgoing, incoming));
+  return pdf;
+}
+
+/// A sphere light as seen from a point.
+struct SphereView {
+  Vector3d to_center;
+  double distance2, radius2;
+  bool inside;
+  double one_minus_cos;  ///< of the cone it fills; 2 inside
+
+  SphereView(const SphereLight& sphere, const Vector3f& position)
+      : to_center(sphere.center.cast<double>() - position.cast<double>()),
+        distance2(to_center.squaredNorm()),
+        radius2(double(sphere.radius) * sphere.radius),
+        inside(distance2 <= radius2),
+        one_minus_cos(2) {
+    if (inside) return;
+    const double sine2 = radius2 / distance2;
+    one_minus_cos = sine2 / (1 + std::sqrt(1 - sine2));
+  }
+
+  double pdf() const { return 1 / (2 * kPi<double> * one_minus_cos); }
+
+  Vector3d sample(const Uniform2& uniform) const {
+    const double drop = uniform.u * one_minus_cos;  // 1 - cos of the angle to the axis
+    const double sine = std::sqrt(std::max(drop * (2 - drop), 0.0));
+    const double angle = 2 * kPi<double> * uniform.v;
+    const Vector3d local(sine * std::cos(angle), sine * std::sin(angle), 1 - drop);
+    // At the very centre there is no axis; the whole sphere is sampled there, so any will do.
+    const Vector3d axis = distance2 > 0 ? to_center.normalized() : Vector3d::UnitZ();
+    return frame_from_axis<double>(axis).to_world(local);
+  }
+
+  /// Where a ray meets the light's surface from the point's side; negative if it does not.
+  double distance_along(const Vector3d& direction) const {
+    const double along = to_center.dot(direction);
+    const double miss2 = to_center.cross(direction).squaredNorm();
+    if (miss2 > radius2 || (!inside && along <= 0)) return -1;
+    const double half_chord = std::sqrt(radius2 - miss2);
+    return inside ? along + half_chord : along - half_chord;
+  }
+};
+
+/// 1 / density, by which a sample's value is multiplied: of the technique that drew it alone, or of
+/// both by the balance heuristic.
+double sample_weight(double own_pdf, double other_pdf, SamplingTechnique technique) {
+  const double pdf = technique == SamplingTechnique::combined ? own_pdf + other_pdf : own_pdf;
+  return pdf > 0 ? 1 / pdf : 0;
+}
+
+}  // namespace
+
+/// What a direction brings apart from light: the direction in both frames, BRDF times cosine.
+struct ReferenceIntegrator::Incoming {
+  Vector3d world;
+  Vector3f local;
+  Eigen::Array3d response;
+
+  Incoming(const Point& point, const Vector3d& direction)
+      : world(direction), local(point.frame.to_local(direction).cast<float>()) {
+    respond(point);
+  }
+  Incoming(const Point& point, const Vector3f& local_direction)
+      : world(point.frame.to_world(local_direction.cast<double>()).normalized()),
+        local(local_direction) {
+    respond(point);
+  }
+  bool dark() const { return !(response > 0).any(); }
+
+ private:
+  void respond(const Point& point) {
+    response = Eigen::Array3d::Zero();
+    if (local.z() <= 0) return;
+    response =
+        eval_brdf(*point.material, point.local_outgoing, local).cast<double>() * double(local.z());
+  }
+};
+
+ReferenceIntegrator::ReferenceIntegrator(const RayScene& shadowing, const ReferenceLights& lights)
+    : shadowing_(shadowing),
+      lights_(lights),
+      world_from_environment_(lights.environment.world_from_environment.cast<double>()) {
+  if (!lights.environment.map) return;
+  environment_.emplace(*lights.environment.map);
+  if (environment_->empty()) environment_.reset();
+}
+
+ReferenceIntegrator::Point ReferenceIntegrator::prepare(const Vector3f& position,
+                                                        const Frame<float>& frame,
+                                                        const Vector3f& outgoing,
+                                                        const Material& material) const {
+  Point point;
+  point.position = position;
+  point.frame = frame.cast<double>();
+  point.ray_origin = position + shadowing_.origin_offset() * frame.z;
+  point.local_outgoing = frame.to_local(outgoing).normalized();
+  point.material = &material;
+  const double diffuse = luminance(material.diffuse);
+  const double specular = material.has_specular() ? luminance(material.specular) : 0;
+  // Both parts keep a share: the specular part's albedo is not known, and may be far from its
+  // colour.
+  point.diffuse_chance = specular > 0 ? std::clamp(diffuse / (diffuse + specular), 0.2, 0.8) : 1;
+  if (!(diffuse > 0) && specular > 0) point.diffuse_chance = 0;
+  return point;
+}
+
+bool ReferenceIntegrator::occluded(const Point& point, const Vector3d& direction,
+                                   double distance) const {
+  return shadowing_.occluded(point.ray_origin, direction.cast<float>(),
+                             static_cast<float>(distance));
+}
+
+Eigen::Array3d ReferenceIntegrator::sample_environment(const Point& point, const Uniform2& uniform,
+                                                       SamplingTechnique technique) const {
+  const EnvironmentSampler::Sample light = environment_->sample(uniform);
+  const Incoming incoming(point, Vector3d(world_from_environment_ * light.direction));
+  if (incoming.dark() || occluded(point, incoming.world, kInfinity)) return Eigen::Array3d::Zero();
+  return incoming.response * light.radiance.cast<double>() *
+         sample_weight(light.pdf, brdf_pdf(point, incoming.local), technique);
+}
+
+Eigen::Array3d ReferenceIntegrator::sample_sphere(const Point& point, const SphereLight& sphere,
+                                                  const Uniform2& uniform,
+                                                  SamplingTechnique technique) const {
+  const SphereView view(sphere, point.position);
+  const Incoming incoming(point, view.sample(uniform));
+  if (incoming.dark()) return Eigen::Array3d::Zero();
+  // A direction on the very edge may miss by a rounding: the light is then at the tangent point.
+  const double distance = view.distance_along(incoming.world);
+  const double tangent = std::sqrt(std::max(view.distance2 - view.radius2, 0.0));
+  if (occluded(point, incoming.world, distance >= 0 ? distance : tangent))
+    return Eigen::Array3d::Zero();
+  return incoming.response * sphere.radiance.cast<double>() *
+         sample_weight(view.pdf(), brdf_pdf(point, incoming.local), technique);
+}
+
+Eigen::Array3d ReferenceIntegrator::sample_brdf(const Point& point, const Uniform2& uniform,
+                                                double choice, SamplingTechnique technique) const {
+  const bool diffuse = choice < point.diffuse_chance;
+  const Incoming incoming(
+      point, diffuse ? sample_cosine(uniform)
+                     : sample_specular_brdf(*point.material, point.local_outgoing,
+                                            below_one(uniform.u), below_one(uniform.v)));
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  if (incoming.dark()) return sum;
+  const double pdf = brdf_pdf(point, incoming.local);
+  const bool blocked = occluded(point, incoming.world, kInfinity);
+  if (environment_ && !blocked) {
+    const Rgb& radiance = eval_environment(*lights_.environment.map,
+                                           world_from_environment_.transpose() * incoming.world);
+    sum += radiance.cast<double>() *
+           sample_weight(pdf, environment_->pdf_of_radiance(radiance), technique);
+  }
+  for (const SphereLight& sphere : lights_.spheres) {
+    const SphereView view(sphere, point.position);
+    const double distance = view.distance_along(incoming.world);
+    if (distance < 0 || (blocked && occluded(point, incoming.world, distance))) continue;
+    sum += sphere.radiance.cast<double>() * sample_weight(pdf, view.pdf(), technique);
+  }
+  return sum * incoming.response;
+}
+
+Eigen::Array3d ReferenceIntegrator::sample(const Point& point, const SampleSequence& sequence,
+                                           std::uint32_t index, SamplingTechnique technique) const {
+  Eigen::Array3d sum = Eigen::Array3d::Zero();
+  if (point.local_outgoing.z() <= 0) return sum;
+  if (technique != SamplingTechnique::brdf_only) {
+    if (environment_)
+      sum += sample_environment(point, sequence(index, kEnvironmentPair), technique);
+    for (std::uint32_t i = 0; i < lights_.spheres.size(); ++i)
+      sum += sample_sphere(point, lights_.spheres[i], sequence(index, kFirstSpherePair + i),
+                           technique);
+  }
+  if (technique != SamplingTechnique::lights_only)
+    sum +=
+        sample_brdf(point, sequence(index, kBrdfPair), sequence(index, kChoicePair).u, technique);
+  return sum;
+}
+
+ReferenceEstimate estimate_radiance(const ReferenceIntegrator& integrator,
+                                    std::span<const ReferenceIntegrator::Point> points,
+                                    std::uint64_t stream, const ReferenceOptions& options) {
+  ReferenceEstimate estimate;
+  if (points.empty()) return estimate;
+  const auto replicates = static_cast<size_t>(std::max(options.replicates, 2));
+  const size_t chunk = replicates * points.size();
+  const size_t per_point = (static_cast<size_t>(std::max(options.samples, 1)) + chunk - 1) / chunk;
+  const std::uint64_t seed = mix_seed(options.seed, stream);
+  // Welford's running mean and sum of squares over the replicates, each an independent estimate.
+  Eigen::Array3d squares = Eigen::Array3d::Zero();
+  for (size_t replicate = 0; replicate < replicates; ++replicate) {
+    const SampleSequence sequence(mix_seed(seed, replicate));
+    Eigen::Array3d sum = Eigen::Array3d::Zero();
+    std::uint32_t index = 0;
+    // Consecutive indices for each point: such a run is well spread by itself.
+    for (const ReferenceIntegrator::Point& point : points)
+      for (size_t i = 0; i < per_point; ++i)
+        sum += integrator.sample(point, sequence, index++, options.technique);
+    const Eigen::Array3d value = sum / double(per_point * points.size());
+    const Eigen::Array3d delta = value - estimate.mean;
+    estimate.mean += delta / double(replicate + 1);
+    squares += delta * (value - estimate.mean);
+  }
+  estimate.variance = squares / (double(replicates - 1) * double(replicates));
+  return estimate;
+}
+
+Picture render_reference(const Subject& subject, const SceneRays& rays, const PrimaryHits& hits,
+                         const ReferenceLights& lights, const ReferenceOptions& options,
+                         const Progress& progress) {
+  const ReferenceIntegrator integrator(rays.shadowing(), lights);
+  const View& view = hits.view;
+  const Vector3f& eye = view.camera.origin;
+  const PrimaryRays camera = primary_rays(view.camera, view.width, view.height);
+  const size_t per_pixel = hits.samples_per_pixel();
+  Picture picture;
+  picture.radiance = picture.variance = Image(view.width, view.height);
+  picture.hit.assign(picture.radiance.pixels.size(), 0);
+  parallel_with_progress("reference", picture.hit.size(), 64, progress, [&](size_t pixel) {
+    std::vector<ReferenceIntegrator::Point> points;
+    points.reserve(per_pixel);
+    Rgb background = Rgb::Zero();
+    size_t met = 0;
+    for (size_t sample = 0; sample < per_pixel; ++sample) {
+      const PrimaryHit& hit = hits.pixel_hits(pixel)[sample];
+      if (hit.triangle == PrimaryHit::kMiss) {
+        background +=
+            eval_environment_light(lights.environment, hits.direction(camera, pixel, sample));
+        continue;
+      }
+      ++met;
+      const SurfacePoint point = surface_point(*subject.transfer, hit, eye);
+      if (!point.front) continue;
+      points.push_back(integrator.prepare(point.position, point.frame,
+                                          outgoing_toward(eye, point.position, point.frame.z),
+                                          subject.vertex_material(point.vertices[0])));
+    }
+    const ReferenceEstimate estimate = estimate_radiance(integrator, points, pixel, options);
+    const double share = double(points.size()) / double(per_pixel);
+    picture.radiance.pixels[pixel] =
+        (estimate.mean * share).cast<float>() + background / float(per_pixel);
+    picture.variance.pixels[pixel] = (estimate.variance * share * share).cast<float>();
+    picture.hit[pixel] = met == per_pixel;
+  });
+  return picture;
+}
+
+VertexReference shade_reference_vertices(const Subject& subject, const SceneRays& rays,
+                                         const Vector3f& eye, const ReferenceLights& lights,
+                                         const ReferenceOptions& options,
+                                         const Progress& progress) {
+  const ReferenceIntegrator integrator(rays.shadowing(), lights);
+  const Transfer& transfer = *subject.transfer;
+  VertexReference result;
+  result.radiance.resize(transfer.vertex_count());
+  result.variance.resize(transfer.vertex_count());
+  parallel_with_progress("reference", transfer.vertex_count(), 16, progress, [&](size_t vertex) {
+    const Vector3f& position = transfer.positions[vertex];
+    const Frame<float> frame =
+        frame_from_normal_tangent(transfer.normals[vertex], transfer.tangents[vertex]);
+    const ReferenceIntegrator::Point point = integrator.prepare(
+        position, frame, outgoing_toward(eye, position, frame.z), subject.vertex_material(vertex));
+    const ReferenceEstimate estimate = estimate_radiance(integrator, {&point, 1}, vertex, options);
+    result.radiance[vertex] = estimate.mean.cast<float>();
+    result.variance[vertex] = estimate.variance.cast<float>();
+  });
+  return result;
+}
+
+}  // namespace burnish

@@ -1,0 +1,138 @@
+#include "harness/render.h"
+
+#include <chrono>
+#include <vector>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+namespace burnish {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+Rgb interpolate_radiance(const std::vector<Rgb>& radiance, const SurfacePoint& point) {
+  Rgb sum = Rgb::Zero();
+  for (int i = 0; i < 3; ++i) sum += point.weight[i] * radiance[point.vertices[i]];
+  return sum;
+}
+
+/// Shades interpolated points; holds the interpolated coefficients between calls.
+class PixelShader {
+ public:
+  PixelShader(const Subject& subject, const Vector3f& eye, const Lighting& lighting,
+              const ShadingOptions& options)
+      : subject_(subject),
+        transfer_(*subject.transfer),
+        eye_(eye),
+        lighting_(lighting),
+        options_(options),
+        coefficients_(static_cast<size_t>(transfer_.terms())) {}
+
+  Rgb operator()(const SurfacePoint& surface) {
+    const Vector3f outgoing = outgoing_toward(eye_, surface.position, surface.frame.z);
+    const Material& material = subject_.vertex_material(surface.vertices[0]);
+    ShadingPoint point;
+    point.position = surface.position;
+    point.frame = surface.frame;
+    if (transfer_.bases.empty()) return shade_point(point, outgoing, material, lighting_, options_);
+    const auto& [a, b, c] = surface.vertices;
+    const std::uint8_t basis = transfer_.basis_id[a];
+    if (basis == transfer_.basis_id[b] && basis == transfer_.basis_id[c]) {
+      interpolate_coefficients(surface);
+      point.basis = &transfer_.bases[basis];
+      point.coefficients = coefficients_.data();
+      return shade_point(point, outgoing, material, lighting_, options_);
+    }
+    // Coefficients of different bases cannot be mixed; the radiance they give can.
+    Rgb sum = Rgb::Zero();
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t vertex = surface.vertices[i];
+      point.basis = &transfer_.bases[transfer_.basis_id[vertex]];
+      point.coefficients = transfer_.vertex_coefficients(vertex);
+      sum += surface.weight[i] * shade_point(point, outgoing, material, lighting_, options_);
+    }
+    return sum;
+  }
+
+ private:
+  void interpolate_coefficients(const SurfacePoint& surface) {
+    const float* a = transfer_.vertex_coefficients(surface.vertices[0]);
+    const float* b = transfer_.vertex_coefficients(surface.vertices[1]);
+    const float* c = transfer_.vertex_coefficients(surface.vertices[2]);
+    for (size_t i = 0; i < coefficients_.size(); ++i)
+      coefficients_[i] =
+          surface.weight[0] * a[i] + surface.weight[1] * b[i] + surface.weight[2] * c[i];
+  }
+
+  const Subject& subject_;
+  const Transfer& transfer_;
+  Vector3f eye_;
+  const Lighting& lighting_;
+  const ShadingOptions& options_;
+  std::vector<float> coefficients_;
+};
+
+}  // namespace
+
+std::vector<Rgb> shade_all_vertices(const Subject& subject, const Lighting& lighting,
+                                    const Vector3f& eye, const ShadingOptions& options) {
+  std::vector<Rgb> radiance(subject.transfer->vertex_count());
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, radiance.size(), 64), [&](const auto& range) {
+    shade_vertices(*subject.transfer, lighting, subject.materials, subject.material_id, eye,
+                   options, range.begin(),
+                   std::span(radiance).subspan(range.begin(), range.size()));
+  });
+  return radiance;
+}
+
+Picture render(const Subject& subject, const PrimaryHits& hits, const Lighting& lighting,
+               const EnvironmentLight& background, ShadePer per, const ShadingOptions& options,
+               RenderTimings* timings) {
+  const View& view = hits.view;
+  const Vector3f& eye = view.camera.origin;
+  RenderTimings times;
+  std::vector<Rgb> vertex_radiance;
+  if (per == ShadePer::vertex) {
+    const auto start = Clock::now();
+    vertex_radiance = shade_all_vertices(subject, lighting, eye, options);
+    times.vertices_ms = milliseconds_since(start);
+  }
+
+  const auto start = Clock::now();
+  const PrimaryRays camera = primary_rays(view.camera, view.width, view.height);
+  const size_t per_pixel = hits.samples_per_pixel();
+  Picture picture;
+  picture.radiance = Image(view.width, view.height);
+  picture.hit.assign(picture.radiance.pixels.size(), 0);
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, picture.hit.size(), 256), [&](const auto& range) {
+    PixelShader shade_pixel(subject, eye, lighting, options);
+    for (size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
+      const std::span<const PrimaryHit> samples = hits.pixel_hits(pixel);
+      Rgb sum = Rgb::Zero();
+      size_t met = 0;
+      for (size_t i = 0; i < per_pixel; ++i) {
+        if (samples[i].triangle == PrimaryHit::kMiss) {
+          sum += eval_environment_light(background, hits.direction(camera, pixel, i));
+          continue;
+        }
+        ++met;
+        const SurfacePoint point = surface_point(*subject.transfer, samples[i], eye);
+        if (!point.front) continue;
+        sum += per == ShadePer::vertex ? interpolate_radiance(vertex_radiance, point)
+                                       : shade_pixel(point);
+      }
+      picture.radiance.pixels[pixel] = sum / float(per_pixel);
+      picture.hit[pixel] = met == per_pixel;
+    }
+  });
+  times.pixels_ms = milliseconds_since(start);
+  if (timings) *timings = times;
+  return picture;
+}
+
+}  // namespace burnish
