@@ -135,7 +135,7 @@ struct RayScene::Impl {
     scene = rtcNewScene(device.handle);
     // Robust: no ray slips through the edge between two triangles, however the tree was built.
     rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_MEDIUM);
+    rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
     device.check("making a scene");
   }
   ~Impl() { rtcReleaseScene(scene); }
