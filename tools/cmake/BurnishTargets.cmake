@@ -2,6 +2,7 @@
 
 # Everything that is compiled here links this; it is never exported.
 add_library(burnish_warnings INTERFACE)
+target_compile_features(burnish_warnings INTERFACE cxx_std_20)
 target_compile_options(burnish_warnings INTERFACE
   $<$<CXX_COMPILER_ID:GNU,Clang>:-Wall -Wextra $<$<BOOL:${BURNISH_WERROR}>:-Werror>>)
 if(BURNISH_SANITIZE)
