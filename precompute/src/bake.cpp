@@ -274,13 +274,15 @@ Transfer bake(const TriangleMesh& receiver, std::span<const TriangleMesh> occlud
   RowMatrixf training = compute_training(station, selection.training, progress, workers);
 
   // The passes of the decomposition, and one more for the coefficients of what it was trained on.
-  const auto report = [&](int done, int total) {
-    if (progress &&
-        !progress("basis", static_cast<std::uint64_t>(done), static_cast<std::uint64_t>(total) + 1))
-      throw Cancelled();
+  std::uint64_t passes = 0;
+  const auto report = [&](std::uint64_t done) {
+    if (progress && !progress("basis", done, passes + 1)) throw Cancelled();
   };
   const Clock::time_point pca_start = Clock::now();
-  const PcaBasis basis = train_pca(training, {.terms = options.terms}, report);
+  const PcaBasis basis = train_pca(training, {.terms = options.terms}, [&](int done, int total) {
+    passes = static_cast<std::uint64_t>(total);
+    report(static_cast<std::uint64_t>(done));
+  });
   const double pca_s = seconds_since(pca_start);
 
   Transfer transfer;
@@ -292,6 +294,7 @@ Transfer bake(const TriangleMesh& receiver, std::span<const TriangleMesh> occlud
   const Projector projector(basis, transfer);
   PcaResidual residual = project_training(selection, training, projector, workers);
   training.resize(0, 0);
+  report(passes + 1);
   residual += project_others(station, selection, basis, projector, progress, workers);
 
   Provenance& provenance = transfer.provenance;

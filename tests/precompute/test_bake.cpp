@@ -1,0 +1,392 @@
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "burnish/formats/error.h"
+#include "burnish/precompute/bake.h"
+#include "burnish/precompute/spherical_distance_transform.h"
+#include "burnish/sphere/octahedral_map.h"
+#include "precompute/test_meshes.h"
+
+namespace burnish {
+namespace {
+
+constexpr BakeOptions kSmall{.directions = 64, .resolution = 16, .terms = 12};
+
+// A wavy floor with a sphere over it, turned so that nothing is aligned with anything.
+TriangleMesh make_scene(float scale = 1) {
+  TriangleMesh mesh = test::make_sphere({0.2f, -0.1f, 0.75f}, 0.4f, 7);
+  mesh.name = "wavy floor and sphere";
+  const int cells = 13;
+  const auto first = static_cast<std::uint32_t>(mesh.positions.size());
+  for (int i = 0; i <= cells; ++i)
+    for (int j = 0; j <= cells; ++j) {
+      const double x = 2.0 * j / cells - 1, y = 2.0 * i / cells - 1;
+      mesh.positions.push_back(
+          Vector3d(x, y, 0.1 * std::sin(6 * x + 1) * std::cos(5 * y)).cast<float>());
+      mesh.normals.push_back(Vector3d(-0.6 * std::cos(6 * x + 1) * std::cos(5 * y),
+                                      0.5 * std::sin(6 * x + 1) * std::sin(5 * y), 1)
+                                 .normalized()
+                                 .cast<float>());
+    }
+  for (int i = 0; i < cells; ++i)
+    for (int j = 0; j < cells; ++j) {
+      const auto a = first + static_cast<std::uint32_t>(i * (cells + 1) + j), b = a + cells + 1;
+      mesh.triangles.push_back({a, a + 1, b + 1});
+      mesh.triangles.push_back({a, b + 1, b});
+    }
+  const Eigen::Matrix3f turn =
+      Eigen::AngleAxisf(0.7f, Vector3f(0.3f, 0.5f, -0.8f).normalized()).toRotationMatrix();
+  for (Vector3f& p : mesh.positions) p = scale * (turn * p + Vector3f(0.13f, 0.27f, -0.31f));
+  for (Vector3f& n : mesh.normals) n = (turn * n).normalized();
+  test::complete(mesh);
+  return mesh;
+}
+
+// Mean + eigen-SSDFs * coefficients, in double.
+std::vector<double> reconstruct(const Transfer& transfer, std::size_t vertex) {
+  const SsdfBasis& basis = transfer.bases.at(transfer.basis_id.at(vertex));
+  const auto terms = static_cast<std::size_t>(basis.terms);
+  std::vector<double> ssdf(basis.mean.begin(), basis.mean.end());
+  for (std::size_t i = 0; i < ssdf.size(); ++i)
+    for (std::size_t k = 0; k < terms; ++k)
+      ssdf[i] += double(basis.eigen[i * terms + k]) * transfer.vertex_coefficients(vertex)[k];
+  return ssdf;
+}
+
+// The same chain without compression.
+std::vector<std::vector<float>> direct_ssdfs(const TriangleMesh& mesh, const BakeOptions& options) {
+  RayScene scene;
+  scene.add_mesh(mesh.positions, mesh.triangles);
+  scene.commit();
+  const DirectionTable directions(options.directions);
+  const SphericalDistanceTransform transform(directions, options.resolution);
+  SphericalDistanceTransform::Scratch scratch;
+  VisibilityMask mask(options.directions);
+  std::vector<std::vector<float>> ssdfs;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    sample_visibility(scene, directions, mesh.positions[i], mesh.normals[i], mask);
+    ssdfs.emplace_back(static_cast<std::size_t>(options.resolution * options.resolution));
+    transform.transform(mask, ssdfs.back(), scratch);
+  }
+  return ssdfs;
+}
+
+double pitch(const BakeOptions& options) {
+  const DirectionTable directions(options.directions);
+  return SphericalDistanceTransform(directions, options.resolution).boundary_pitch();
+}
+
+void expect_horizon(const Transfer& transfer, const BakeOptions& options, double slack) {
+  for (std::size_t v = 0; v < transfer.vertex_count(); ++v) {
+    const std::vector<double> ssdf = reconstruct(transfer, v);
+    for (int i = 0; i < options.resolution * options.resolution; ++i) {
+      const auto d = octahedral_texel_direction<double>(i % options.resolution,
+                                                        i / options.resolution, options.resolution);
+      const double horizon =
+          std::asin(std::clamp(transfer.normals[v].cast<double>().dot(d), -1.0, 1.0));
+      ASSERT_NEAR(ssdf[static_cast<std::size_t>(i)], horizon, slack) << "vertex " << v;
+    }
+  }
+}
+
+void expect_equal(const Transfer& a, const Transfer& b) {
+  ASSERT_EQ(a.bases.size(), b.bases.size());
+  for (std::size_t i = 0; i < a.bases.size(); ++i) {
+    EXPECT_EQ(a.bases[i].terms, b.bases[i].terms);
+    EXPECT_EQ(a.bases[i].mean, b.bases[i].mean);
+    EXPECT_EQ(a.bases[i].eigen, b.bases[i].eigen);
+  }
+  EXPECT_EQ(a.coefficients, b.coefficients);
+  EXPECT_EQ(a.provenance.rays, b.provenance.rays);
+  EXPECT_EQ(a.provenance.residual_rms_rad, b.provenance.residual_rms_rad);
+  EXPECT_EQ(a.provenance.wrong_sign_fraction, b.provenance.wrong_sign_fraction);
+}
+
+TEST(Bake, SingleTriangleSeesItsHorizon) {
+  TriangleMesh mesh;
+  mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
+  mesh.normals.assign(3, Vector3f(0, -1, 1).normalized());
+  mesh.triangles = {{0, 1, 2}};
+  test::complete(mesh);
+  const Transfer transfer = bake(mesh, {}, kSmall);
+  EXPECT_EQ(transfer.terms(), 1) << "equal SSDFs have no directions but a zero one";
+  for (const float c : transfer.coefficients) EXPECT_EQ(c, 0);
+  EXPECT_EQ(transfer.provenance.residual_rms_rad, 0);
+  EXPECT_EQ(transfer.provenance.wrong_sign_fraction, 0);
+  expect_horizon(transfer, kSmall, pitch(kSmall));  // the transform's stated bound
+}
+
+TEST(Bake, ConvexMeshSeesItsHorizons) {
+  const TriangleMesh sphere = test::make_sphere({1, 2, 3}, 0.5f, 8);
+  BakeOptions options = kSmall;
+  options.terms = 256;  // as many as there are texels: nothing is lost to compression
+  const Transfer transfer = bake(sphere, {}, options);
+  // The transform's stated bound, and float rounding of sums over 256 terms.
+  expect_horizon(transfer, options, pitch(options) + 1e-4);
+}
+
+TEST(Bake, AllTermsReproduceEverySsdf) {
+  const TriangleMesh mesh = make_scene();
+  BakeOptions options = kSmall;
+  options.terms = 256;
+  options.training_vertices = 0;
+  const Transfer transfer = bake(mesh, {}, options);
+  const std::vector<std::vector<float>> truth = direct_ssdfs(mesh, options);
+  for (std::size_t v = 0; v < truth.size(); ++v) {
+    const std::vector<double> ssdf = reconstruct(transfer, v);
+    for (std::size_t i = 0; i < ssdf.size(); ++i)
+      ASSERT_NEAR(ssdf[i], truth[v][i], 1e-4);  // float sums over 256 terms of size 1
+  }
+}
+
+TEST(Bake, ResidualIsThatOfTheReconstruction) {
+  const TriangleMesh mesh = make_scene();
+  const std::vector<std::vector<float>> truth = direct_ssdfs(mesh, kSmall);
+  for (const int training : {0, 100}) {
+    BakeOptions options = kSmall;
+    options.training_vertices = training;
+    const Transfer transfer = bake(mesh, {}, options);
+    ASSERT_EQ(transfer.terms(), 12);
+    EXPECT_EQ(transfer.provenance.training_vertices,
+              training ? training : static_cast<int>(mesh.positions.size()));
+    double squared = 0, wrong = 0, texels = 0;
+    for (std::size_t v = 0; v < truth.size(); ++v) {
+      const std::vector<double> ssdf = reconstruct(transfer, v);
+      for (std::size_t i = 0; i < ssdf.size(); ++i, ++texels) {
+        squared += (ssdf[i] - truth[v][i]) * (ssdf[i] - truth[v][i]);
+        wrong += ssdf[i] * truth[v][i] < 0;
+      }
+    }
+    const double rms = std::sqrt(squared / texels);
+    EXPECT_NEAR(transfer.provenance.residual_rms_rad / rms, 1, 1e-4);  // float sums
+    EXPECT_NEAR(transfer.provenance.wrong_sign_fraction, wrong / texels, 3 / texels);
+    // Compression to 12 terms has to earn its keep: SSDFs are about 0.8 rad rms.
+    EXPECT_LT(rms, training ? 0.12 : 0.1);
+    EXPECT_LT(wrong / texels, 0.1);
+  }
+}
+
+TEST(Bake, SameBytesOnAnyNumberOfThreads) {
+  const TriangleMesh mesh = make_scene();
+  BakeOptions options = kSmall;
+  options.training_vertices = 90;
+  std::vector<Transfer> transfers;
+  for (const std::size_t threads : {1, 2, 5}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    transfers.push_back(bake(mesh, {}, options));
+  }
+  expect_equal(transfers[0], transfers[1]);
+  expect_equal(transfers[0], transfers[2]);
+}
+
+TEST(Bake, SizeOfTheMeshDoesNotMatter) {
+  BakeOptions options = kSmall;
+  options.directions = 128;
+  options.training_vertices = 90;
+  const Transfer unit = bake(make_scene(), {}, options);
+  double largest = 0;
+  for (const float c : unit.coefficients) largest = std::max(largest, std::abs(double(c)));
+  for (const float scale : {1e-6f, 1e6f, 0x1p-20f}) {
+    SCOPED_TRACE(testing::Message() << "scale " << scale);
+    const Transfer scaled = bake(make_scene(scale), {}, options);
+    EXPECT_EQ(scaled.provenance.rays, unit.provenance.rays);
+    ASSERT_EQ(scaled.coefficients.size(), unit.coefficients.size());
+    double squared = 0, all = 0, worst = 0;
+    for (std::size_t i = 0; i < unit.coefficients.size(); ++i) {
+      const double difference = double(scaled.coefficients[i]) - unit.coefficients[i];
+      squared += difference * difference;
+      all += double(unit.coefficients[i]) * unit.coefficients[i];
+      worst = std::max(worst, std::abs(difference));
+    }
+    // A power of two changes no bit. Else a coordinate rounds differently, and of 8000 rays a
+    // vertex a few that graze an edge come out differently: a boundary point that moves by a texel
+    // (0.04 rad) changes few of the 256 texels by that.
+    if (scale == 0x1p-20f) {
+      EXPECT_EQ(worst, 0);
+    }
+    EXPECT_LT(std::sqrt(squared / all), 1e-3);
+    EXPECT_LT(worst, 0.02 * largest);
+  }
+}
+
+TEST(Bake, OccludersShadowAndAreKept) {
+  TriangleMesh floor;
+  test::add_quad(floor, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
+  test::complete(floor);
+  // Two half lids over the whole floor, given with vertices of their own.
+  TriangleMesh lids[2];
+  test::add_quad(lids[0], {-100, -100, 0.5f}, {100, 0, 0}, {0, 200, 0});
+  test::add_quad(lids[1], {0, -100, 0.5f}, {100, 0, 0}, {0, 200, 0});
+  for (TriangleMesh& lid : lids) test::complete(lid);
+  const Transfer open = bake(floor, {}, kSmall), covered = bake(floor, lids, kSmall);
+  EXPECT_GT(*std::max_element(open.bases[0].mean.begin(), open.bases[0].mean.end()), 1.0f);
+  // Light still comes in under the rim of the lids, 0.5 above and 99 away.
+  EXPECT_LT(*std::max_element(covered.bases[0].mean.begin(), covered.bases[0].mean.end()), 0.06f);
+  EXPECT_EQ(covered.positions.size(), 4u);
+  ASSERT_EQ(covered.occluder_positions.size(), 8u);
+  EXPECT_EQ(covered.occluder_positions[4], lids[1].positions[0]);
+  ASSERT_EQ(covered.occluder_triangles.size(), 4u);
+  EXPECT_EQ(covered.occluder_triangles[3], (Triangle{4, 6, 7}));
+  EXPECT_EQ(open.provenance.occluder_hash, "");
+  EXPECT_EQ(covered.provenance.occluder_hash.size(), 16u);
+  EXPECT_EQ(covered.provenance.mesh_hash, open.provenance.mesh_hash);
+}
+
+TEST(Bake, ProvenanceTellsWhatWasBaked) {
+  TriangleMesh mesh = make_scene();
+  const Transfer transfer = bake(mesh, {}, kSmall);
+  const Provenance& provenance = transfer.provenance;
+  EXPECT_FALSE(provenance.version.empty());
+  EXPECT_EQ(provenance.mesh_name, mesh.name);
+  EXPECT_EQ(provenance.directions, 64);
+
+  // FNV-1a from its definition, byte by byte.
+  std::uint64_t hash = 0xcbf29ce484222325u;
+  const auto add = [&](const auto& values) {
+    const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+    for (std::size_t i = 0; i < values.size() * sizeof(values[0]); ++i)
+      hash = (hash ^ bytes[i]) * 0x100000001b3u;
+  };
+  add(mesh.positions);
+  add(mesh.normals);
+  add(mesh.tangents);
+  add(mesh.triangles);
+  EXPECT_EQ(std::stoull(provenance.mesh_hash, nullptr, 16), hash);
+  EXPECT_EQ(provenance.mesh_hash.size(), 16u);
+
+  // Every direction strictly above a vertex's horizon, and no other, is one ray.
+  std::uint64_t rays = 0;
+  const DirectionTable directions(64);
+  for (const Vector3f& n : mesh.normals)
+    for (int i = 0; i < 64 * 64; ++i) rays += n.dot(directions.direction(i % 64, i / 64)) > 0;
+  // Directions within rounding of a horizon may go either way.
+  EXPECT_NEAR(double(provenance.rays), double(rays), 5);
+
+  mesh.positions[3].x() += 0.01f;
+  EXPECT_NE(bake(mesh, {}, kSmall).provenance.mesh_hash, provenance.mesh_hash);
+}
+
+TEST(Bake, UnusableVerticesAreLeftOut) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const TriangleMesh mesh = make_scene();
+  const Transfer plain = bake(mesh, {}, kSmall);
+  TriangleMesh messy = mesh;
+  const std::size_t count = mesh.positions.size();
+  const Vector3f up = Vector3f::UnitZ();
+  messy.positions.insert(messy.positions.end(),
+                         {{0, 0, 0}, {nan, 0, 0}, {0, 0, 0}, mesh.positions[40]});
+  messy.normals.insert(messy.normals.end(), {{0, 0, 0}, up, {nan, 0, 1}, 7 * mesh.normals[40]});
+  messy.tangents.insert(messy.tangents.end(), 4, Vector3f::UnitX());
+  messy.file_vertex.insert(messy.file_vertex.end(), 4, 0);
+  messy.triangles.push_back({static_cast<std::uint32_t>(count + 1), 0, 1});  // a corner not finite
+  const Transfer transfer = bake(messy, {}, kSmall);
+  ASSERT_EQ(transfer.coefficients.size(), 12 * (count + 4));
+  for (const float c : transfer.coefficients) ASSERT_TRUE(std::isfinite(c));
+  for (std::size_t v = count; v < count + 3; ++v)
+    for (int k = 0; k < 12; ++k) EXPECT_EQ(transfer.vertex_coefficients(v)[k], 0);
+  // The copy of vertex 40, referenced by no triangle and with a longer normal, is as vertex 40.
+  for (int k = 0; k < 12; ++k)
+    EXPECT_NEAR(transfer.vertex_coefficients(count + 3)[k], transfer.vertex_coefficients(40)[k],
+                1e-4);
+  EXPECT_EQ(transfer.provenance.training_vertices, static_cast<int>(count + 1));
+  EXPECT_NEAR(transfer.provenance.residual_rms_rad, plain.provenance.residual_rms_rad,
+              0.02 * plain.provenance.residual_rms_rad);  // one vertex more among 300
+}
+
+TEST(Bake, ProgressCountsEveryStageFromOneThreadAtATime) {
+  const TriangleMesh mesh = make_scene();
+  BakeOptions options = kSmall;
+  options.training_vertices = 50;
+  std::atomic<int> inside = 0;
+  std::vector<std::string> stages;
+  std::vector<std::uint64_t> last, totals;
+  bake(mesh, {}, options, [&](std::string_view stage, std::uint64_t done, std::uint64_t total) {
+    EXPECT_EQ(inside.fetch_add(1), 0);
+    if (stages.empty() || stages.back() != stage) {
+      stages.emplace_back(stage);
+      last.push_back(0);
+      totals.push_back(total);
+    }
+    EXPECT_GE(done, last.back());
+    EXPECT_EQ(total, totals.back());
+    last.back() = done;
+    inside.fetch_sub(1);
+    return true;
+  });
+  EXPECT_EQ(stages, (std::vector<std::string>{"train", "basis", "bake"}));
+  ASSERT_EQ(totals.size(), 3u);
+  EXPECT_EQ(totals[0], 50u);
+  EXPECT_EQ(totals[2], mesh.positions.size() - 50);
+  EXPECT_EQ(last[0], totals[0]);
+  EXPECT_EQ(last[1], totals[1]);
+  EXPECT_EQ(last[2], totals[2]);
+}
+
+TEST(Bake, StopsPromptlyWhenAskedTo) {
+  const TriangleMesh mesh = make_scene();
+  BakeOptions options = kSmall;
+  options.training_vertices = 50;
+  for (const std::string stop : {"train", "basis", "bake"})
+    for (const std::uint64_t at : {0, 3}) {
+      int calls_after = 0;
+      bool stopped = false;
+      const Progress progress = [&](std::string_view stage, std::uint64_t done, std::uint64_t) {
+        calls_after += stopped;
+        stopped = stopped || (stage == stop && done >= at);
+        return !stopped;
+      };
+      EXPECT_THROW(bake(mesh, {}, options, progress), Cancelled) << stop << " at " << at;
+      EXPECT_TRUE(stopped);
+      EXPECT_EQ(calls_after, 0);
+    }
+}
+
+TEST(Bake, RejectsOptionsOutOfRange) {
+  const TriangleMesh mesh = test::make_disc({0, 0, 0}, 1, 5);
+  EXPECT_NO_THROW(bake(mesh, {}, {.directions = 64, .resolution = 64, .terms = 1}));
+  for (const BakeOptions& options : std::vector<BakeOptions>{
+           {.directions = 32, .resolution = 16},
+           {.directions = 2048, .resolution = 16},
+           {.directions = 96, .resolution = 16},
+           {.directions = -64, .resolution = 16},
+           {.directions = 64, .resolution = 128},
+           {.directions = 64, .resolution = 8},
+           {.directions = 64, .resolution = 24},
+           {.directions = 64, .resolution = 16, .terms = 0},
+           {.directions = 64, .resolution = 16, .terms = 257},
+           {.directions = 64, .resolution = 16, .terms = 12, .training_vertices = -1}})
+    EXPECT_THROW(bake(mesh, {}, options), Error)
+        << options.directions << " " << options.resolution << " " << options.terms << " "
+        << options.training_vertices;
+}
+
+TEST(Bake, RejectsMeshesItCannotUse) {
+  const TriangleMesh good = test::make_disc({0, 0, 0}, 1, 5);
+  const auto expect_rejected = [&](const std::function<void(TriangleMesh&)>& spoil) {
+    TriangleMesh mesh = good;
+    spoil(mesh);
+    EXPECT_THROW(bake(mesh, {}, kSmall), Error);
+  };
+  expect_rejected([](TriangleMesh& m) { m.triangles.clear(); });
+  expect_rejected([](TriangleMesh& m) { m.normals.pop_back(); });
+  expect_rejected([](TriangleMesh& m) { m.tangents.pop_back(); });
+  expect_rejected([](TriangleMesh& m) { m.file_vertex.pop_back(); });
+  expect_rejected([](TriangleMesh& m) { m.triangles[0][1] = 6; });
+  expect_rejected([](TriangleMesh& m) {
+    for (Vector3f& n : m.normals) n.setZero();
+  });
+  TriangleMesh occluder = good;
+  occluder.triangles[2][0] = 1000;
+  EXPECT_THROW(bake(good, std::span(&occluder, 1), kSmall), Error);
+}
+
+}  // namespace
+}  // namespace burnish
