@@ -25,9 +25,9 @@ TEST(StudioEnvironment, IsFinitePositiveAndHighDynamicRange) {
     darkest = std::min(darkest, pixel.minCoeff());
     brightest = std::max(brightest, pixel.maxCoeff());
   }
-  EXPECT_GT(darkest, 0.02f);
-  EXPECT_LT(brightest, 61.0f);
-  EXPECT_GT(brightest, 50.0f);
+  EXPECT_GT(darkest, 0.01f);
+  EXPECT_LT(brightest, 11.0f);
+  EXPECT_GT(brightest, 9.0f);
 }
 
 TEST(StudioEnvironment, LightsComeFromAboveKeyWarmFillCool) {
@@ -38,9 +38,9 @@ TEST(StudioEnvironment, LightsComeFromAboveKeyWarmFillCool) {
   };
   EXPECT_GT(at(50, 38).x(), 1.5f * at(50, 38).z());
   EXPECT_LT(at(-70, 22).x(), 0.6f * at(-70, 22).z());
-  EXPECT_GT(luminance(at(180, 34)), 15.0f);
+  EXPECT_GT(luminance(at(180, 34)), 7.0f);
   // The strip follows a great circle, which is lower 30 degrees to the side.
-  EXPECT_GT(luminance(at(150, 30.3)), 15.0f) << "the strip light is long";
+  EXPECT_GT(luminance(at(150, 30.3)), 7.0f) << "the strip light is long";
   for (const double longitude : {-170.0, -60.0, 10.0, 90.0})
     EXPECT_LT(luminance(at(longitude, -40)), 0.1f) << "no light from below";
 }

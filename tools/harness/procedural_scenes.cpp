@@ -21,7 +21,7 @@ void paint(ProceduralScene& scene, const Material& material) {
 
 Material diffuse(const Rgb& albedo) { return {.diffuse = albedo, .specular = Rgb::Zero()}; }
 
-const Rgb kFloorAlbedo(0.42f, 0.40f, 0.37f);
+const Rgb kFloorAlbedo(0.40f, 0.38f, 0.35f);
 
 ProceduralScene dish() {
   ProceduralScene scene;

@@ -132,7 +132,7 @@ ReferenceIntegrator::Point ReferenceIntegrator::prepare(const Vector3f& position
   const double specular = material.has_specular() ? luminance(material.specular) : 0;
   // Both parts keep a share: the specular part's albedo is not known, and may be far from its
   // colour.
-  point.diffuse_chance = specular > 0 ? std::clamp(diffuse / (diffuse + specular), 0.2, 0.8) : 1;
+  point.diffuse_chance = specular > 0 ? std::clamp(diffuse / (diffuse + specular), 0.1, 0.9) : 1;
   if (!(diffuse > 0) && specular > 0) point.diffuse_chance = 0;
   return point;
 }

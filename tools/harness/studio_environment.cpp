@@ -17,11 +17,10 @@ struct SoftBox {
 };
 
 const SoftBox kSoftBoxes[] = {
-    {50, 38, 0.34, 0.26, 0.10, Rgb(15.0f, 11.5f, 8.0f)},     // key, warm
-    {-70, 22, 0.50, 0.38, 0.20, Rgb(1.3f, 1.9f, 2.8f)},      // fill, cool
-    {-10, 80, 0.55, 0.40, 0.15, Rgb(3.2f, 3.2f, 3.2f)},      // overhead
-    {180, 34, 1.40, 0.055, 0.03, Rgb(20.0f, 20.5f, 21.0f)},  // strip behind the object
-    {-135, 50, 0.05, 0.05, 0.03, Rgb(60.0f, 54.0f, 46.0f)},  // lamp
+    {50, 38, 0.34, 0.26, 0.10, Rgb(10.0f, 7.6f, 5.2f)},   // key, warm
+    {-70, 22, 0.50, 0.38, 0.20, Rgb(0.8f, 1.2f, 1.8f)},   // fill, cool
+    {-10, 80, 0.55, 0.40, 0.15, Rgb(1.1f, 1.1f, 1.1f)},   // overhead
+    {180, 34, 1.40, 0.055, 0.03, Rgb(9.0f, 9.2f, 9.5f)},  // strip behind the object
 };
 
 double smooth_step(double low, double high, double x) {
@@ -42,7 +41,7 @@ double coverage(const SoftBox& box, const Vector3d& direction) {
 }
 
 Rgb studio_radiance(const Vector3d& direction) {
-  const Rgb ground(0.035f, 0.030f, 0.027f), horizon(0.16f, 0.16f, 0.17f), top(0.30f, 0.32f, 0.36f);
+  const Rgb ground(0.022f, 0.020f, 0.018f), horizon(0.09f, 0.09f, 0.10f), top(0.17f, 0.18f, 0.20f);
   const auto height = static_cast<float>(direction.y());
   const float above = static_cast<float>(smooth_step(-0.15, 0.05, direction.y()));
   Rgb radiance = ground + above * (horizon - ground) + std::max(height, 0.0f) * (top - horizon);

@@ -4,10 +4,10 @@
 
 namespace burnish {
 
-/// A photographer's studio as a lat-long environment, +y up: a dark room, lighter above; a warm
-/// key light, a cool fill opposite, a broad soft box overhead, one long strip light behind, and a
-/// small bright lamp. Radiance 0.02 to 60, every pixel finite and positive. `width` is twice the
-/// height and at least 64.
+/// A photographer's studio as a lat-long environment, +y up: a dark room, lighter above; a warm key
+/// light, a cool fill opposite, a broad soft box overhead and one long strip light behind. Radiance
+/// 0.018 to about 10, every pixel finite and positive; a diffuse floor is neither dark nor burnt
+/// out at exposure 0. `width` is twice the height and at least 64.
 Image studio_environment(int width = 512);
 
 /// How an environment (+y up) stands in a world with the unit vector `up`: the smallest rotation of
