@@ -10,7 +10,7 @@
 namespace burnish {
 
 /// Corners of a polygon that read_mesh accepts: ear clipping of a comb takes quadratic time.
-inline constexpr size_t kMaxPolygonCorners = 65536;
+inline constexpr size_t kMaxPolygonCorners = 16384;
 
 /// Splits a simple polygon, convex or concave, into n - 2 triangles by ear clipping in the plane of
 /// its area vector (Newell). Corner indices, in the polygon's own orientation; corners may lie on a
