@@ -1,0 +1,228 @@
+// Based on: light approximation by an ASG mixture (xu2013asg, Sec. 5.1; tsai2006fitting). Differs:
+// a greedy start instead of local maxima alone, colours by variable projection, irradiance in the
+// error. docs/lights.md has the why and the figures.
+#include "burnish/precompute/fit_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include <fmt/core.h>
+
+#include "burnish/formats/error.h"
+#include "light_fit/compact_source.h"
+#include "light_fit/environment_cells.h"
+#include "light_fit/flux.h"
+#include "light_fit/lobe_pursuit.h"
+
+namespace burnish {
+namespace {
+
+constexpr int kBaseRows = 24;  // of cells, before they are split where the map varies
+constexpr int kNormals = 64;  // of the irradiance: it has few degrees of freedom (order 4 suffices)
+// More steps between two new lobes cost time and find no better fit on the maps of docs/lights.md.
+constexpr int kStepsPerLobe = 8, kFinalSteps = 60;
+constexpr double kTolerance = 1e-4, kFinalTolerance = 1e-6;
+// While lobes are added, irradiance counts less: it would draw them to broad compromises.
+constexpr double kStartIrradianceShare = 0.5;
+
+void check(const Image& environment, const LightFitOptions& options) {
+  const auto refuse = [](const std::string& message) {
+    throw Error(ErrorKind::input, "environment map", message);
+  };
+  const auto in_range = [](auto value, auto low, auto high) {
+    return value >= low && value <= high;
+  };
+  if (!in_range(options.lobes, 1, 128))
+    refuse(fmt::format("{} lobes, expected 1..128", options.lobes));
+  if (!in_range(options.cells, 256, 16384))
+    refuse(fmt::format("{} cells, expected 256..16384", options.cells));
+  if (!in_range(options.irradiance_weight, 0.0, 1e6))
+    refuse(fmt::format("irradiance weight {}, expected 0..1e6", options.irradiance_weight));
+  if (!in_range(options.min_bandwidth, 1e-6, 1e8) ||
+      !in_range(options.max_bandwidth, options.min_bandwidth, 1e8))
+    refuse(fmt::format("bandwidths {}..{}, expected a range within 1e-6..1e8",
+                       options.min_bandwidth, options.max_bandwidth));
+  if (environment.width < 1 || environment.height < 1 ||
+      environment.pixels.size() != size_t(environment.width) * environment.height)
+    refuse(fmt::format("{} x {} with {} pixels, expected width * height > 0", environment.width,
+                       environment.height, environment.pixels.size()));
+  for (size_t i = 0; i < environment.pixels.size(); ++i) {
+    const Rgb& pixel = environment.pixels[i];
+    if (!pixel.isFinite().all() || !(pixel >= 0).all())
+      refuse(fmt::format("pixel ({}, {}) is ({}, {}, {}), expected finite numbers >= 0",
+                         i % environment.width, i / environment.width, pixel[0], pixel[1],
+                         pixel[2]));
+  }
+}
+
+LightFitTarget make_target(const Image& environment, const std::vector<EnvironmentCell>& cells,
+                           double irradiance_weight) {
+  const auto count = static_cast<Eigen::Index>(cells.size());
+  LightFitTarget target;
+  target.scale.resize(count);
+  Eigen::MatrixXd radiance(count, 3);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    target.direction.push_back(cell_direction(environment, cells[i]));
+    target.variance.push_back(cells[i].solid_angle / 12);
+    target.scale[i] = std::sqrt(cells[i].solid_angle);
+    radiance.row(i) = cells[i].radiance.matrix().transpose();
+  }
+  // The target is exact; that of a lobe is summed over the cells.
+  const FluxVectors flux = environment_flux(environment);
+  Eigen::MatrixXd cosine(kNormals, count), irradiance(kNormals, 3);
+  for (int n = 0; n < kNormals; ++n) {
+    const Vector3d normal = fibonacci_direction(n, kNormals);
+    for (Eigen::Index i = 0; i < count; ++i)
+      cosine(n, i) = cell_irradiance(target.direction[i], cells[i].solid_angle, normal);
+    irradiance.row(n) = irradiance_of_flux(flux, normal);
+  }
+  const double radiance_norm = (target.scale.asDiagonal() * radiance).norm();
+  target.scale /= radiance_norm;
+  target.irradiance_scale = irradiance_weight / irradiance.norm();
+  target.irradiance = target.irradiance_scale * cosine * target.scale.cwiseInverse().asDiagonal();
+  target.value.resize(count + kNormals, 3);
+  target.value.topRows(count) = target.scale.asDiagonal() * radiance;
+  target.value.bottomRows(kNormals) = target.irradiance_scale * irradiance;
+  return target;
+}
+
+// The bandwidth of a lobe whose standard deviation is half the width of a cell, which is
+// sqrt(12 variance).
+double narrowest_bandwidth(double cell_variance) { return 1 / (6 * cell_variance); }
+
+// A lobe must not hide inside a cell, where nothing is known of its width.
+void widen_to_cells(const LightFitTarget& target, std::vector<LobeShape>& shapes) {
+  for (LobeShape& shape : shapes) {
+    const Vector3d axis = shape.rotation * Vector3d::UnitZ();
+    size_t nearest = 0;
+    double closest = -2;
+    for (size_t i = 0; i < target.direction.size(); ++i)
+      if (target.direction[i].dot(axis) > closest) {
+        closest = target.direction[i].dot(axis);
+        nearest = i;
+      }
+    shape.log_bandwidth =
+        shape.log_bandwidth.cwiseMin(std::log(narrowest_bandwidth(target.variance[nearest])));
+  }
+}
+
+Rgb to_color(const Eigen::Array3d& color) {
+  return color.min(double(std::numeric_limits<float>::max())).cast<float>();
+}
+
+EnvironmentLobe to_light(const LobeShape& shape, const Eigen::Array3d& color) {
+  const Eigen::Matrix3f axes = shape.rotation.toRotationMatrix().cast<float>();
+  EnvironmentLobe light;
+  light.lobe.frame = {axes.col(0), axes.col(1), axes.col(2)};
+  light.lobe.bandwidth_x = static_cast<float>(std::exp(shape.log_bandwidth[0]));
+  light.lobe.bandwidth_y = static_cast<float>(std::exp(shape.log_bandwidth[1]));
+  light.color = to_color(color);
+  return light;
+}
+
+// Adds lobes one by one where the residual calls for one, improving all of them each time, then
+// polishes. `go_on` is asked at every step, with the number of lobes.
+std::vector<LobeShape> fit_shapes(const LightFitTarget& target, const BandwidthRange& range,
+                                  size_t count, const std::function<bool(size_t)>& go_on,
+                                  int& iterations) {
+  LightFitTarget start = target;
+  start.irradiance *= kStartIrradianceShare;
+  start.value.bottomRows(kNormals) *= kStartIrradianceShare;
+  std::vector<LobeShape> shapes;
+  const std::function<bool()> keep_going = [&] { return go_on(shapes.size()); };
+  const auto refine = [&](const LightFitTarget& goal, int steps, double tolerance) {
+    iterations += refine_lobes(goal, range, steps, tolerance, keep_going, shapes);
+    if (!keep_going()) throw Cancelled();
+  };
+  const LobeDictionary dictionary(start, range);
+  while (shapes.size() < count) {
+    shapes.push_back(dictionary.propose(mixture_residual(start, shapes)));
+    refine(start, kStepsPerLobe, kTolerance);
+  }
+  refine(target, kFinalSteps, kFinalTolerance);
+  widen_to_cells(target, shapes);
+  return shapes;
+}
+
+// The lights of given shapes. The irradiance of each shape is now exact: summed over cells, that of
+// a lobe as narrow as they are is a few per cent off.
+std::vector<EnvironmentLobe> color_shapes(const LightFitTarget& target,
+                                          const std::vector<LobeShape>& shapes) {
+  std::vector<EnvironmentLobe> lights;
+  Eigen::MatrixXd samples = sample_lobes(target, shapes);
+  for (size_t i = 0; i < shapes.size(); ++i) {
+    lights.push_back(to_light(shapes[i], Eigen::Array3d::Ones()));
+    FluxVectors flux;
+    append_lobe_flux(lights[i], flux);
+    for (int n = 0; n < kNormals; ++n)
+      samples(target.cells() + n, i) =
+          target.irradiance_scale * irradiance_of_flux(flux, fibonacci_direction(n, kNormals))[0];
+  }
+  const LobeColors colors = solve_colors(target, samples);
+  for (size_t i = 0; i < shapes.size(); ++i)
+    lights[i].color = to_color(colors.color.row(i).transpose().array());
+  return lights;
+}
+
+// The lobes of a map without compact sources, in its units.
+std::vector<EnvironmentLobe> fit_mixture(const Image& environment, const LightFitOptions& options,
+                                         size_t count, const std::function<bool(size_t)>& go_on,
+                                         int& iterations) {
+  const std::vector<EnvironmentCell> cells =
+      environment_cells(environment, kBaseRows, options.cells);
+  const bool black = std::all_of(cells.begin(), cells.end(),
+                                 [](const auto& cell) { return cell.radiance.sum() == 0; });
+  if (black) return {};
+  const LightFitTarget target = make_target(environment, cells, options.irradiance_weight);
+  const double finest = *std::min_element(target.variance.begin(), target.variance.end());
+  const BandwidthRange range{
+      options.min_bandwidth,
+      std::clamp(narrowest_bandwidth(finest), options.min_bandwidth, options.max_bandwidth)};
+  return color_shapes(target, fit_shapes(target, range, count, go_on, iterations));
+}
+
+}  // namespace
+
+LightFit fit_light(const Image& environment, const LightFitOptions& options,
+                   const Progress& progress) {
+  check(environment, options);
+  LightFit fit;
+  float peak = 0;
+  for (const Rgb& pixel : environment.pixels) peak = std::max(peak, pixel.maxCoeff());
+  if (peak == 0) return fit;
+
+  // In units of the peak, so that squares neither overflow nor vanish.
+  Image remainder = environment;
+  for (Rgb& pixel : remainder.pixels) pixel /= peak;
+  std::vector<EnvironmentLobe>& lobes = fit.rig.lobes;
+  const size_t wanted = options.lobes;
+  while (lobes.size() < wanted / 2) {
+    const auto source = take_compact_source(remainder, options.max_bandwidth);
+    if (!source) break;
+    lobes.push_back(*source);
+  }
+  const size_t taken = lobes.size();
+  const auto go_on = [&](size_t placed) {
+    return !progress || progress("fit lights", taken + placed, wanted);
+  };
+  if (!go_on(0)) throw Cancelled();
+  if (taken < wanted) {
+    const auto mixture = fit_mixture(remainder, options, wanted - taken, go_on, fit.iterations);
+    lobes.insert(lobes.end(), mixture.begin(), mixture.end());
+  }
+  for (EnvironmentLobe& light : lobes) light.color = to_color(light.color.cast<double>() * peak);
+  std::erase_if(lobes, [](const EnvironmentLobe& light) { return (light.color <= 0).all(); });
+  const auto power = [](const EnvironmentLobe& light) {
+    return luminance(light.color) * integral(light.lobe);
+  };
+  std::stable_sort(lobes.begin(), lobes.end(),
+                   [&](const auto& a, const auto& b) { return power(a) > power(b); });
+  fit.error = measure_light_fit(environment, fit.rig);
+  return fit;
+}
+
+}  // namespace burnish
