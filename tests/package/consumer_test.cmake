@@ -29,6 +29,7 @@ execute_process(
 execute_process(COMMAND ${CMAKE_COMMAND} --build ${build_dir} COMMAND_ERROR_IS_FATAL ANY)
 execute_process(
   COMMAND ${build_dir}/consumer
+  WORKING_DIRECTORY ${SCRATCH_DIR}
   OUTPUT_VARIABLE printed OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 
 if(NOT printed MATCHES "^[0-9.e+-]+$" OR printed LESS LOWEST OR printed GREATER HIGHEST)

@@ -1,15 +1,20 @@
-// Distance from the origin to a triangle at x = 0.125.
+// Bakes the four corners of a floor, stores the result, reads it back, and prints the angle from
+// the zenith to the nearest boundary of what a corner sees, which is the horizon.
 #include <cstdio>
+#include <fstream>
 
-#include "burnish/precompute/ray_scene.h"
+#include "burnish/formats/mesh_file.h"
+#include "burnish/formats/transfer_file.h"
+#include "burnish/precompute/bake.h"
+#include "burnish/visibility/ssdf.h"
 
 int main() {
-  const burnish::Vector3f corners[] = {{0.125f, -1, -1}, {0.125f, 1, -1}, {0.125f, 0, 1}};
-  const burnish::Triangle triangle[] = {{0, 1, 2}};
-  burnish::RayScene scene;
-  scene.add_mesh(corners, triangle);
-  scene.commit();
-  burnish::RayHit hit{};
-  scene.intersect(burnish::Vector3f(0, 0, 0), burnish::Vector3f(1, 0, 0), hit);
-  std::printf("%.7f\n", hit.distance);
+  std::ofstream("floor.off") << "OFF\n4 2 0\n-1 -1 0\n1 -1 0\n1 1 0\n-1 1 0\n3 0 1 2\n3 0 2 3\n";
+  const burnish::TriangleMesh floor = burnish::read_mesh("floor.off");
+  burnish::write_transfer(burnish::bake(floor, {}, {}), "floor.h5");
+  const burnish::Transfer transfer = burnish::read_transfer("floor.h5");
+  const burnish::SsdfSample zenith =
+      burnish::lookup_ssdf(transfer.bases[0], transfer.vertex_coefficients(0), transfer.terms(),
+                           burnish::Vector3f(0, 0, 1));
+  std::printf("%.5f\n", zenith.distance);
 }
