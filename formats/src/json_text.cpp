@@ -21,7 +21,8 @@ std::string line_and_column(std::string_view text, size_t byte) {
   const std::string_view before = text.substr(0, std::min(byte, text.size()));
   const auto line = 1 + std::count(before.begin(), before.end(), '\n');
   const size_t newline = before.rfind('\n');
-  const size_t column = newline == std::string_view::npos ? before.size() : before.size() - newline;
+  const size_t line_start = newline == std::string_view::npos ? 0 : newline + 1;
+  const size_t column = before.size() - line_start;
   return fmt::format("line {}, column {}", line, std::max<size_t>(column, 1));
 }
 
@@ -166,9 +167,9 @@ std::string json_string(const std::string& text) {
 
 void JsonPlace::fail(const std::string& message) const {
   const std::string path = pointer.to_string();
-  throw Error(
-      ErrorKind::input, subject,
-      fmt::format("line {}, {}: {}", json_line(text, pointer), path.empty() ? "/" : path, message));
+  const std::string message_and_place =
+      fmt::format("line {}, {}: {}", json_line(text, pointer), path.empty() ? "/" : path, message);
+  throw Error(ErrorKind::input, subject, one_line(message_and_place));
 }
 
 JsonPlace JsonPlace::at(const std::string& key) const {

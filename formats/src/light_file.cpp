@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kLightFormatName = "burnish lights";
 constexpr float kFrameTolerance = 1e-3f;
-constexpr float kRounding = 1e-6f;  // of a unit vector's length, in float
+constexpr float kRounding = 4e-6f;  // some 30 roundings of a float near 1
 constexpr float kMax = std::numeric_limits<float>::max();
 
 Vector3f read_vector(const JsonPlace& place, float low = -kMax) {

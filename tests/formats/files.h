@@ -46,10 +46,18 @@ inline std::string read_bytes(const std::string& path) {
 }
 
 inline void write_bytes(const std::string& path, const std::string& bytes) {
-  std::ofstream stream(path, std::ios::binary | std::ios::trunc);
+  std::filesystem::remove(path);  // to truncate a file makes ext4 flush it: slow in a loop
+  std::ofstream stream(path, std::ios::binary);
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   stream.close();
   ASSERT_TRUE(stream) << path;
+}
+
+/// The folder of shared trial data, which may be absent: the environment variable
+/// BURNISH_SHARED_DATA, or ../shared/data beside the sources.
+inline std::filesystem::path shared_data() {
+  const char* variable = std::getenv("BURNISH_SHARED_DATA");
+  return variable ? variable : BURNISH_SOURCE_DIR "/../shared/data";
 }
 
 /// What the call throws as Error::what(), or "" when it throws none; a failure if it is not one
