@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <set>
+#include <sstream>
 
 #include <fmt/format.h>
 
@@ -14,6 +15,36 @@ namespace burnish::tools {
 namespace {
 
 std::string command_line_of_this_process;
+
+/// Breaks lines between words, at most `width` columns each where words allow.
+std::string wrapped(const std::string& text, size_t width) {
+  std::string result, line;
+  std::istringstream words(text);
+  for (std::string word; words >> word;) {
+    if (!line.empty() && line.size() + 1 + word.size() > width) {
+      result += line + "\n";
+      line.clear();
+    }
+    line += (line.empty() ? "" : " ") + word;
+  }
+  return result + line;
+}
+
+/// CLI11's help with wrapped descriptions, and each positional named once.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  HelpFormatter() { column_width(kTextColumn); }
+  std::string make_option_opts(const CLI::Option* option) const override {
+    return option->get_positional() ? "" : Formatter::make_option_opts(option);
+  }
+  std::string make_option_desc(const CLI::Option* option) const override {
+    return wrapped(Formatter::make_option_desc(option), kColumns - kTextColumn);
+  }
+
+ private:
+  static constexpr size_t kTextColumn = 34;
+  static constexpr size_t kColumns = 100;
+};
 
 const Command* find_command(const Program& program, std::string_view name) {
   for (const Command& command : program.commands)
@@ -50,9 +81,8 @@ std::unique_ptr<CLI::App> make_app(const Program& program, const Command& comman
   auto app =
       std::make_unique<CLI::App>(command.summary, fmt::format("{} {}", program.name, command.name));
   app->set_help_flag("-h,--help", "print this text and exit");
-  app->set_version_flag("--version", version_text(program));
-  app->get_formatter()->column_width(34);
-  app->get_formatter()->label("OPTIONS", "OPTIONS");
+  app->set_version_flag("--version", version_text(program), "print what this build is and exit");
+  app->formatter(std::make_shared<HelpFormatter>());
   app->footer(
       "Exit codes: 0 done, 1 usage, 2 input cannot be used, 3 not built in, 4 output cannot be\n"
       "written, 5 a check failed, 130 interrupted.");

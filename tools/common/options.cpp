@@ -1,5 +1,6 @@
 #include "common/options.h"
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
 #include <cmath>
@@ -8,6 +9,8 @@
 
 namespace burnish::tools {
 namespace {
+
+constexpr int kMaxSide = 16384;  ///< of a picture
 
 template <class T>
 std::optional<T> parse_whole(std::string_view text) {
@@ -117,6 +120,23 @@ CLI::Option* add_color(CLI::App& app, const std::string& flags, Rgb& value,
   };
   return add_parsed(app, flags, "R,G,B", fmt::format("{}; each 0..1 (default {})", text, present),
                     "three numbers R,G,B in 0..1", parse);
+}
+
+CLI::Option* add_size(CLI::App& app, int& width, int& height) {
+  const auto parse = [&width, &height](const std::string& found) {
+    const size_t cross = std::min(found.find('x'), found.size());
+    const auto wide = parse_integer(found.substr(0, cross));
+    const auto high = parse_integer(found.substr(std::min(cross + 1, found.size())));
+    if (!wide || !high || *wide < 1 || *wide > kMaxSide || *high < 1 || *high > kMaxSide)
+      return false;
+    width = static_cast<int>(*wide);
+    height = static_cast<int>(*high);
+    return true;
+  };
+  const std::string accepted = fmt::format("1..{} pixels", kMaxSide);
+  return add_parsed(app, "--size", "WxH",
+                    fmt::format("picture size, each {} (default {}x{})", accepted, width, height),
+                    "WIDTHxHEIGHT, each an integer in " + accepted, parse);
 }
 
 CLI::Option* add_file(CLI::App& app, const std::string& flags, const std::string& placeholder,

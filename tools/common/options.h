@@ -54,6 +54,9 @@ CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::stri
 CLI::Option* add_color(CLI::App& app, const std::string& flags, Rgb& value,
                        const std::string& text);
 
+/// --size "WIDTHxHEIGHT" of a picture, each 1..16384 pixels.
+CLI::Option* add_size(CLI::App& app, int& width, int& height);
+
 /// One of several words.
 template <class T>
 CLI::Option* add_choice(CLI::App& app, const std::string& flags, T& value,

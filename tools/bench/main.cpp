@@ -1,0 +1,15 @@
+#include <array>
+
+#include "stations.h"
+
+int main(int argc, char** argv) {
+  using namespace burnish::tools;
+  constexpr std::array kStations = {
+      Command{"bake", "time of a bake, and the diffuse error of what it baked", declare_bake_bench},
+      Command{"shade", "time of shading all vertices, and its error, by material",
+              declare_shade_bench},
+  };
+  const Program program{"burnish-bench", "Measures the stations of burnish, one by one.",
+                        kStations};
+  return run_program(program, argc, argv);
+}

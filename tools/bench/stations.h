@@ -1,0 +1,11 @@
+#pragma once
+
+#include "common/command.h"
+
+/// The stations, one source file each. What each measures is in its help text.
+namespace burnish::tools {
+
+std::function<void()> declare_bake_bench(CLI::App& app);
+std::function<void()> declare_shade_bench(CLI::App& app);
+
+}  // namespace burnish::tools

@@ -1,0 +1,150 @@
+#include "look_options.h"
+
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+#include "burnish/formats/image_file.h"
+#include "burnish/formats/light_file.h"
+#include "burnish/formats/transfer_file.h"
+#include "common/interrupt.h"
+#include "common/options.h"
+#include "common/pipeline_options.h"
+#include "common/program.h"
+#include "harness/studio_environment.h"
+
+namespace burnish::tools {
+namespace {
+
+void add_light_options(CLI::App& app, LookOptions& options) {
+  add_file(app, "--env", "ENV", options.environment,
+           fmt::format("lat-long environment map, .exr or .hdr, or '{}' for the built-in one; "
+                       "may be left out when --lights is given",
+                       kStudioName));
+  add_file(app, "--lights", "FILE.json", options.lights,
+           "lights to use, as fit-light writes them (default: fitted to ENV)");
+  add_number(app, "--lobes", "N", options.fit.lobes, {1, 128}, "lights to fit without --lights");
+  add_number(app, "--rotate-env", "DEG", options.rotate_deg, {-3600, 3600, "degrees"},
+             "turns the environment about the upward axis, counter-clockwise from above");
+  add_choice(app, "--up", options.up, {{"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}},
+             "the mesh's upward axis");
+}
+
+void add_material_options(CLI::App& app, Material& material) {
+  const Range<float> alpha_range = {kMinAlpha, kMaxAlpha};
+  add_choice(app, "--material", material.model,
+             {{"diffuse", SpecularModel::none},
+              {"ward", SpecularModel::ward},
+              {"ashikhmin", SpecularModel::ashikhmin_shirley}},
+             "reflectance model");
+  add_number(app, "--alpha-x", "A", material.alpha_x, alpha_range,
+             "roughness (slope) along the tangent");
+  add_number(app, "--alpha-y", "A", material.alpha_y, alpha_range,
+             "roughness (slope) across the tangent");
+  add_color(app, "--diffuse", material.diffuse, "diffuse albedo, linear");
+  add_color(app, "--specular", material.specular,
+            "specular scale (ward) or reflectance at normal incidence (ashikhmin), linear");
+}
+
+/// The light file's rig in the environment's frame, or one fitted to the environment.
+LightFile load_lights(const LookOptions& options, const Image& environment, Work& work,
+                      nlohmann::ordered_json& report) {
+  if (!options.lights.empty()) {
+    report["lights"] = options.lights;
+    return read_lights(options.lights);
+  }
+  const Stopwatch watch;
+  const LightFit fit = fit_light(environment, options.fit, work.progress());
+  report["fit_s"] = watch.seconds();
+  report["fit_relative_l2"] = fit.error.relative_l2;
+  LightFile file;
+  file.rig = fit.rig;
+  return file;
+}
+
+}  // namespace
+
+void add_look_options(CLI::App& app, LookOptions& options) {
+  options.material.model = SpecularModel::ward;
+  options.material.specular = Rgb::Constant(0.5f);
+  options.material.alpha_x = 0.3f;
+  options.material.alpha_y = 0.03f;
+  add_file(app, "FILE.h5", "FILE.h5", options.transfer, "transfer file of bake (required)")
+      ->required();
+  add_light_options(app, options);
+  add_material_options(app, options.material);
+  add_parsed(app, "--camera", "CAMERA",
+             "ox,oy,oz,tx,ty,tz,fov: eye and target in mesh units, vertical field of view in "
+             "degrees, above 0, below 180 (default: frames the mesh)",
+             "seven numbers ox,oy,oz,tx,ty,tz,fov with different eye and target and fov above 0, "
+             "below 180",
+             [&options](const std::string& found) {
+               try {
+                 parse_camera(found);
+               } catch (const std::invalid_argument&) {
+                 return false;
+               }
+               options.camera = found;
+               return true;
+             });
+  add_shading_options(app, options.shading);
+  add_number(app, "--terms", "N", options.shading.terms, {0, 1024},
+             "PCA terms used, at most those baked; 0 for all");
+  add_choice(app, "--specular-from", options.specular_from_map, {{"map", true}, {"lobes", false}},
+             "what highlights reflect: the environment map or the fitted lights");
+}
+
+Image load_environment(const std::string& name, Work& work) {
+  if (name == kStudioName) return studio_environment();
+  EnvironmentReport report;
+  Image image = read_environment(name, &report);
+  throw_if_interrupted();
+  for (const std::string& note : report.image.notes) work.print(fmt::format("{}: {}", name, note));
+  return image;
+}
+
+Look load_look(const LookOptions& options, Work& work) {
+  if (options.environment.empty() && options.lights.empty())
+    throw UsageError("no light given, expected --env or --lights");
+  Look look;
+  look.transfer = read_transfer(options.transfer);
+  throw_if_interrupted();
+  if (options.shading.terms > look.transfer.terms())
+    throw UsageError(fmt::format("--terms: found {}, expected at most the {} that {} holds",
+                                 options.shading.terms, look.transfer.terms(), options.transfer));
+  if (!options.environment.empty()) look.environment = load_environment(options.environment, work);
+
+  look.report = {{"transfer", options.transfer}, {"environment", options.environment}};
+  LightFile lights = load_lights(options, look.environment, work, look.report);
+  throw_if_interrupted();
+  // A light file's own rotation turns lights and map alike, so that they stay the same light.
+  look.world_from_environment =
+      world_from_environment(up_direction(options.up), options.rotate_deg) *
+      lights.world_from_environment;
+  look.rig = std::move(lights.rig);
+  rotate_lobes(look.rig, look.world_from_environment);
+  look.lights = prepare_lights(look.rig, options.shading);
+  look.report["lobes"] = look.rig.lobes.size();
+  look.report["sphere_lights"] = look.rig.spheres.size();
+
+  const bool has_map = !look.environment.pixels.empty();
+  look.specular_from_map = options.specular_from_map && has_map;
+  if (look.specular_from_map && options.material.has_specular()) {
+    const Stopwatch watch;
+    look.filtered = prefilter_environment(look.environment);
+    look.filtered.environment_from_world = look.world_from_environment.transpose();
+    look.report["prefilter_s"] = watch.seconds();
+  }
+  throw_if_interrupted();
+  return look;
+}
+
+Camera look_camera(const LookOptions& options, const Transfer& transfer, float aspect) {
+  const Vector3f up = up_direction(options.up);
+  if (!options.camera.empty()) return parse_camera(options.camera, up);
+  Eigen::AlignedBox3f box;
+  for (const Vector3f& position : transfer.positions) box.extend(position);
+  return frame_bounds(box.min(), box.max(), aspect, up);
+}
+
+}  // namespace burnish::tools

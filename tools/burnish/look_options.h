@@ -1,0 +1,65 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "burnish/formats/mesh_frames.h"
+#include "burnish/precompute/fit_light.h"
+#include "burnish/shading/shade.h"
+#include "common/work.h"
+#include "harness/camera.h"
+#include "harness/picture.h"
+
+namespace burnish::tools {
+
+/// What render and shade have in common: light, material, viewpoint and the dials of the shading.
+struct LookOptions {
+  std::string transfer;
+  std::string environment;  ///< file, or kStudioName
+  std::string lights;       ///< light file; empty: fitted to the environment
+  LightFitOptions fit;
+  float rotate_deg = 0;
+  UpAxis up = UpAxis::y;
+  Material material;
+  bool specular_from_map = true;
+  ShadingOptions shading;
+  std::string camera;  ///< "ox,oy,oz,tx,ty,tz,fov"; empty: frames the mesh
+};
+
+/// The name that stands for the procedural studio environment in place of a file.
+inline constexpr const char* kStudioName = "studio";
+
+/// Declares all of them; FILE.h5 is the first positional.
+void add_look_options(CLI::App& app, LookOptions& options);
+
+/// A baked mesh and all that lights it.
+struct Look {
+  Transfer transfer;
+  Image environment;                       ///< no pixels without --env
+  Eigen::Matrix3f world_from_environment;  ///< of `environment`
+  LightRig rig;                            ///< in the world
+  PreparedLights lights;                   ///< of `rig`
+  PrefilteredEnvironment filtered;
+  bool specular_from_map = true;
+  nlohmann::ordered_json report;  ///< what was read and how long it took
+
+  /// These refer to the object.
+  Lighting lighting() const { return {&lights, specular_from_map ? &filtered : nullptr}; }
+  EnvironmentLight environment_light() const {
+    return {environment.pixels.empty() ? nullptr : &environment, world_from_environment};
+  }
+};
+
+/// Reads, fits and filters what the options name. Throws UsageError where they contradict each
+/// other.
+Look load_look(const LookOptions& options, Work& work);
+
+/// The camera of --camera, or one that frames the transfer's vertices.
+Camera look_camera(const LookOptions& options, const Transfer& transfer, float aspect);
+
+/// Reads an environment file, or makes the studio; prints what a user may want to know of it.
+Image load_environment(const std::string& name, Work& work);
+
+}  // namespace burnish::tools

@@ -1,0 +1,22 @@
+#include <array>
+
+#include "commands.h"
+
+int main(int argc, char** argv) {
+  using namespace burnish::tools;
+  constexpr std::array kCommands = {
+      Command{"bake", "bake the visibility of every vertex of a mesh", declare_bake},
+      Command{"info", "say what is in a mesh, picture, transfer or light file", declare_info},
+      Command{"fit-light", "fit anisotropic Gaussian lights to an environment map",
+              declare_fit_light},
+      Command{"render", "draw a baked mesh under an environment, and the truth beside it",
+              declare_render},
+      Command{"shade", "write the radiance of every vertex as PLY", declare_shade},
+      Command{"demo", "bake, light and draw a built-in scene", declare_demo},
+  };
+  const Program program{"burnish",
+                        "Bakes what every vertex of a mesh can see, then relights the mesh under "
+                        "any environment and material.",
+                        kCommands};
+  return run_program(program, argc, argv);
+}

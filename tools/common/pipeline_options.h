@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "burnish/precompute/bake.h"
+#include "burnish/shading/shade.h"
+
+namespace burnish::tools {
+
+/// Declares --directions, --resolution, --terms and --training-vertices.
+void add_bake_options(CLI::App& app, BakeOptions& options);
+
+/// Throws UsageError where they contradict each other. For before anything is read.
+void check_bake_options(const BakeOptions& options);
+
+/// Declares the dials of shading but for `terms`: --visibility, --cosine, --integral and
+/// --environment-taps.
+void add_shading_options(CLI::App& app, ShadingOptions& options);
+
+}  // namespace burnish::tools
