@@ -1,0 +1,94 @@
+// The frame of the benchmarks, and its program on a small mesh.
+
+#include "bench/bench.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "sample_files.h"
+
+namespace burnish::tools {
+namespace {
+
+using nlohmann::json;
+
+TEST(BenchFrame, MedianIsTheMiddleOrTheMeanOfTheMiddleTwo) {
+  EXPECT_EQ(summarise({3, 1, 2}).median_s, 2);
+  EXPECT_EQ(summarise({4, 1, 3, 2}).median_s, 2.5);
+  EXPECT_EQ(summarise({5}).median_s, 5);
+  EXPECT_EQ(summarise({3, 1, 2}).min_s, 1);
+  EXPECT_EQ(summarise({3, 1, 2}).max_s, 3);
+}
+
+TEST(BenchFrame, MeasureRunsWarmUpAndTimedRuns) {
+  BenchOptions options;
+  options.warmup = 2;
+  options.repeat = 3;
+  int runs = 0;
+  const Timing timing = measure(options, [&] { ++runs; });
+  EXPECT_EQ(runs, 5);
+  EXPECT_LE(timing.min_s, timing.median_s);
+  EXPECT_LE(timing.median_s, timing.max_s);
+}
+
+TEST(BenchFrame, TableAlignsNamesLeftAndFiguresRight) {
+  const std::vector<BenchRow> rows = {{{"name", "a"}, {"ms", 1.23456}, {"n", 7}},
+                                      {{"name", "long"}, {"ms", 1234.5}, {"more", "x"}}};
+  EXPECT_EQ(format_table(rows),
+            "name     ms  n  more\n"
+            "a     1.235  7      \n"
+            "long   1234        x");
+}
+
+TEST(BenchFrame, CsvQuotesAndKeepsAllDigits) {
+  const std::vector<BenchRow> rows = {{{"name", "a,b"}, {"value", 0.1}},
+                                      {{"name", "say \"x\""}, {"other", 18446744073709551615u}}};
+  EXPECT_EQ(format_csv(rows),
+            "name,value,other\r\n"
+            "\"a,b\",0.1,\r\n"
+            "\"say \"\"x\"\"\",,18446744073709551615\r\n");
+}
+
+class BenchProgram : public testing::TestWithParam<const char*> {};
+
+TEST_P(BenchProgram, WritesTheSameFiguresAsTableJsonAndCsv) {
+  const test::ScratchFolder folder;
+  test::write_whole_file(folder.file("box.obj"), test::box_over_floor_obj());
+  const test::RunResult result = test::burnish_bench(test::joined(
+      {GetParam(), folder.file("box.obj"), "--repeat", "3", "--warmup", "1", "--reference", "8",
+       "--json", folder.file("b.json"), "--csv", folder.file("b.csv"), "--threads", "1"},
+      test::quick_bake_options()));
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  EXPECT_NE(result.out.find("median_ms"), std::string::npos) << result.out;
+
+  const json document = json::parse(test::read_whole_file(folder.file("b.json")));
+  EXPECT_EQ(document["station"], GetParam());
+  const json& machine = document["machine"];
+  for (const char* key : {"cpu", "cores", "isa", "compiler", "commit", "command_line"})
+    EXPECT_TRUE(machine.contains(key)) << key;
+  EXPECT_EQ(machine["threads"], 1);
+  ASSERT_FALSE(document["rows"].empty());
+  for (const json& row : document["rows"]) {
+    EXPECT_EQ(row["vertices"], 24);
+    EXPECT_EQ(row["runs"], 3);
+    EXPECT_GT(row["min_ms"].get<double>(), 0);
+    EXPECT_LE(row["min_ms"].get<double>(), row["median_ms"].get<double>());
+    EXPECT_LE(row["median_ms"].get<double>(), row["max_ms"].get<double>());
+    EXPECT_GT(row["relative_l2"].get<double>(), 0);
+    EXPECT_EQ(row["compared"], 24);
+  }
+  const std::string csv = test::read_whole_file(folder.file("b.csv"));
+  EXPECT_EQ(static_cast<size_t>(std::count(csv.begin(), csv.end(), '\n')),
+            document["rows"].size() + 1);
+  EXPECT_NE(csv.find("command_line"), std::string::npos);
+  EXPECT_NE(csv.find(document["rows"][0]["median_ms"].dump()), std::string::npos) << csv;
+}
+
+INSTANTIATE_TEST_SUITE_P(Stations, BenchProgram, testing::Values("bake", "shade"),
+                         [](const auto& station) { return std::string(station.param); });
+
+}  // namespace
+}  // namespace burnish::tools
