@@ -148,6 +148,10 @@ class TransferReader {
       const htri_t exists = H5Lexists(file_.get(), part.c_str(), H5P_DEFAULT);
       if (exists < 0) fail(part, "damaged on the way to it: " + hdf5_reason());
       if (exists == 0) fail(part, "is missing");
+      H5L_info_t link = {};  // links may lead to other files
+      if (H5Lget_info(file_.get(), part.c_str(), &link, H5P_DEFAULT) < 0 ||
+          link.type != H5L_TYPE_HARD)
+        fail(part, "is a link to another place");
       if (end == std::string::npos) return;
     }
   }

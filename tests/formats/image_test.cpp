@@ -135,7 +135,8 @@ TEST(PngWrite, AppliesExposureAndTheSrgbCurve) {
   EXPECT_EQ(read_png(path, width, height), expected);
   EXPECT_EQ(width, 2);
   EXPECT_EQ(height, 2);
-  write_png(image, path, -1);  // a stop less: 1 as 0.5 before
+  EXPECT_NE(read_bytes(path).find("sRGB"), std::string::npos);  // the chunk
+  write_png(image, path, -1);                                   // a stop less: 1 as 0.5 before
   EXPECT_EQ(read_png(path, width, height)[1], 188);
   write_png(image, path, 1);  // a stop more: 0.25 as 0.5 before
   EXPECT_EQ(read_png(path, width, height)[11], 188);

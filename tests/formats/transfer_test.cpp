@@ -252,6 +252,11 @@ std::vector<Damage> damages() {
        [=](OpenedFile& f) {
          f.replace("/mesh/positions", {40, 3}, std::vector<float>(120, nan));
        }},
+      {"/mesh/normals", "is a link",
+       [](OpenedFile& f) {
+         f.remove("/mesh/normals");
+         H5Lcreate_soft("/mesh/tangents", f.id, "/mesh/normals", H5P_DEFAULT, H5P_DEFAULT);
+       }},
       {"/mesh/normals", "expected 40",
        [](OpenedFile& f) {
          f.replace("/mesh/normals", {39, 3}, std::vector<float>(117));
