@@ -257,6 +257,27 @@ SsdfBasis to_ssdf_basis(const PcaBasis& basis, int resolution) {
   return result;
 }
 
+// All but the number of rays.
+Provenance describe(const TriangleMesh& receiver, std::span<const TriangleMesh> occluders,
+                    const BakeOptions& options, const Selection& selection,
+                    Eigen::Index texels_each, const PcaResidual& residual) {
+  Provenance provenance;
+  provenance.version = BURNISH_VERSION;
+  provenance.mesh_name = receiver.name;
+  Fnv1a mesh_hash, occluder_hash;
+  add_mesh_to(receiver, mesh_hash);
+  for (const TriangleMesh& occluder : occluders) add_mesh_to(occluder, occluder_hash);
+  provenance.mesh_hash = mesh_hash.hex();
+  if (!occluders.empty()) provenance.occluder_hash = occluder_hash.hex();
+  provenance.directions = options.directions;
+  provenance.training_vertices = static_cast<int>(selection.training.size());
+  const double texels = static_cast<double>(texels_each) *
+                        static_cast<double>(selection.training.size() + selection.others.size());
+  provenance.residual_rms_rad = std::sqrt(residual.squared / texels);
+  provenance.wrong_sign_fraction = static_cast<double>(residual.wrong_signs) / texels;
+  return provenance;
+}
+
 }  // namespace
 
 Transfer bake(const TriangleMesh& receiver, std::span<const TriangleMesh> occluders,
@@ -297,24 +318,11 @@ Transfer bake(const TriangleMesh& receiver, std::span<const TriangleMesh> occlud
   report(passes + 1);
   residual += project_others(station, selection, basis, projector, progress, workers);
 
-  Provenance& provenance = transfer.provenance;
-  provenance.version = BURNISH_VERSION;
-  provenance.mesh_name = receiver.name;
-  Fnv1a mesh_hash, occluder_hash;
-  add_mesh_to(receiver, mesh_hash);
-  for (const TriangleMesh& occluder : occluders) add_mesh_to(occluder, occluder_hash);
-  provenance.mesh_hash = mesh_hash.hex();
-  if (!occluders.empty()) provenance.occluder_hash = occluder_hash.hex();
-  provenance.directions = options.directions;
-  provenance.training_vertices = static_cast<int>(selection.training.size());
-  const double texels = static_cast<double>(station.texels()) *
-                        static_cast<double>(selection.training.size() + selection.others.size());
-  provenance.residual_rms_rad = std::sqrt(residual.squared / texels);
-  provenance.wrong_sign_fraction = static_cast<double>(residual.wrong_signs) / texels;
-
+  transfer.provenance =
+      describe(receiver, occluders, options, selection, station.texels(), residual);
   BakeTimings spent;
   for (const Worker& worker : workers) {
-    provenance.rays += worker.rays;
+    transfer.provenance.rays += worker.rays;
     spent.rays_s += worker.rays_s;
     spent.distance_s += worker.distance_s;
     spent.project_s += worker.project_s;
