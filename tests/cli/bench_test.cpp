@@ -33,13 +33,21 @@ TEST(BenchFrame, MeasureRunsWarmUpAndTimedRuns) {
   EXPECT_LE(timing.median_s, timing.max_s);
 }
 
-TEST(BenchFrame, TableAlignsNamesLeftAndFiguresRight) {
-  const std::vector<BenchRow> rows = {{{"name", "a"}, {"ms", 1.23456}, {"n", 7}},
-                                      {{"name", "long"}, {"ms", 1234.5}, {"more", "x"}}};
+TEST(BenchFrame, TableListsWhatIsTheSameAndAlignsWhatDiffers) {
+  const std::vector<BenchRow> rows = {
+      {{"name", "a"}, {"scene", "dish"}, {"ms", 1.23456}, {"n", 7}},
+      {{"name", "long"}, {"scene", "dish"}, {"ms", 1234.5}, {"more", "x"}}};
   EXPECT_EQ(format_table(rows),
+            "scene                     dish\n"
+            "\n"
             "name     ms  n  more\n"
             "a     1.235  7      \n"
             "long   1234        x");
+  EXPECT_EQ(format_table({rows[0]}),
+            "name                      a\n"
+            "scene                     dish\n"
+            "ms                        1.235\n"
+            "n                         7\n");
 }
 
 TEST(BenchFrame, CsvQuotesAndKeepsAllDigits) {

@@ -165,6 +165,14 @@ TEST(BytesText, TakesThreeDigitsAndAUnit) {
   EXPECT_EQ(bytes_text(12345678), "12.3 MB");
 }
 
+TEST(CountText, TakesThreeDigitsAndAPrefix) {
+  EXPECT_EQ(count_text(0), "0");
+  EXPECT_EQ(count_text(999), "999");
+  EXPECT_EQ(count_text(1e6), "1 M");
+  EXPECT_EQ(count_text(3.287e9), "3.29 G");
+  EXPECT_EQ(count_text(4.2e18), "4.2e+06 T");
+}
+
 TEST(ProgressLine, FillsTheWidthAndForetellsTheTimeLeft) {
   // A quarter done in 10 s leaves 30 s.
   const std::string line = progress_line("rays", 25, 100, 10, 80);

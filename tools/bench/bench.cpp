@@ -78,20 +78,31 @@ void add_timing(BenchRow& row, const Timing& timing, const BenchOptions& options
 }
 
 std::string format_table(const std::vector<BenchRow>& rows) {
-  const std::vector<std::string> columns = columns_of(rows);
-  std::vector<std::string> lines(rows.size() + 1);
-  for (const std::string& column : columns) {
-    size_t width = column.size();
-    for (const BenchRow& row : rows) width = std::max(width, cell_text(row, column, 4).size());
-    const bool first = &column == &columns.front();
+  std::string constants;
+  std::vector<std::string> columns;
+  for (const std::string& column : columns_of(rows)) {
+    const std::string first = cell_text(rows.front(), column, 4);
+    const bool constant = std::all_of(rows.begin(), rows.end(), [&](const BenchRow& row) {
+      return cell_text(row, column, 4) == first;
+    });
+    if (constant)
+      constants += fmt::format("{:<26}{}\n", column, first);
+    else
+      columns.push_back(column);
+  }
+  std::vector<std::string> lines(columns.empty() ? 0 : rows.size() + 1);
+  for (size_t c = 0; c < columns.size(); ++c) {
+    size_t width = columns[c].size();
+    for (const BenchRow& row : rows) width = std::max(width, cell_text(row, columns[c], 4).size());
     const auto add = [&](std::string& line, const std::string& cell) {
       // Names to the left, figures to the right.
-      line += first ? fmt::format("{:<{}}", cell, width) : fmt::format("  {:>{}}", cell, width);
+      line += c == 0 ? fmt::format("{:<{}}", cell, width) : fmt::format("  {:>{}}", cell, width);
     };
-    add(lines[0], column);
-    for (size_t i = 0; i < rows.size(); ++i) add(lines[i + 1], cell_text(rows[i], column, 4));
+    add(lines[0], columns[c]);
+    for (size_t i = 0; i < rows.size(); ++i) add(lines[i + 1], cell_text(rows[i], columns[c], 4));
   }
-  return fmt::format("{}", fmt::join(lines, "\n"));
+  return constants + (constants.empty() || lines.empty() ? "" : "\n") +
+         fmt::format("{}", fmt::join(lines, "\n"));
 }
 
 std::string format_csv(const std::vector<BenchRow>& rows) {

@@ -46,8 +46,9 @@ using BenchRow = nlohmann::ordered_json;
 /// Adds the median, minimum and maximum in ms, and the number of runs.
 void add_timing(BenchRow& row, const Timing& timing, const BenchOptions& options);
 
-/// Rows as aligned columns under their names. The columns are those of all rows, in the order of
-/// their first appearance; a row without a value leaves it empty.
+/// Rows as aligned columns under their names, below a list of what is the same in all of them. The
+/// columns are those of all rows, in the order of their first appearance; a row without a value
+/// leaves it empty.
 std::string format_table(const std::vector<BenchRow>& rows);
 
 /// The same as RFC 4180 CSV.

@@ -34,7 +34,7 @@ struct Options {
   int width = 720;
   int height = 480;
   int antialias = 2;
-  int reference_samples = 64;
+  int reference_samples = 128;
   std::uint64_t seed = 1;
   CommonOptions common;
 

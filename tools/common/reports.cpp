@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "common/work.h"
+
 namespace burnish::tools {
 
 nlohmann::ordered_json bake_report(const Transfer& transfer, const BakeOptions& options,
@@ -33,12 +35,13 @@ nlohmann::ordered_json bake_report(const Transfer& transfer, const BakeOptions& 
 std::string bake_summary(const Transfer& transfer, const BakeTimings& timings) {
   const Provenance& made = transfer.provenance;
   const double seconds = std::max(timings.total_s, 1e-9);
+  const auto rays = static_cast<double>(made.rays);
   return fmt::format(
-      "{} vertices, {} terms, baked in {:.1f} s ({:.3g} M rays, {:.3g} M rays/s)\n"
+      "{} vertices, {} terms, baked in {:.1f} s ({} rays, {} rays/s)\n"
       "residual {:.2f} degrees rms, {:.2f} % of texels change sides",
-      transfer.vertex_count(), transfer.terms(), timings.total_s,
-      static_cast<double>(made.rays) * 1e-6, static_cast<double>(made.rays) * 1e-6 / seconds,
-      made.residual_rms_rad * 180 / kPi<double>, made.wrong_sign_fraction * 100);
+      transfer.vertex_count(), transfer.terms(), timings.total_s, count_text(rays),
+      count_text(rays / seconds), made.residual_rms_rad * 180 / kPi<double>,
+      made.wrong_sign_fraction * 100);
 }
 
 nlohmann::ordered_json frame_report(const PrimaryHits& hits, const RenderTimings& timings) {

@@ -49,15 +49,18 @@ void write_text(const std::string& path, const std::string& text) {
   file.commit();
 }
 
-std::string bytes_text(double bytes) {
-  constexpr std::array<const char*, 5> kUnits = {"bytes", "kB", "MB", "GB", "TB"};
-  size_t unit = 0;
-  while (bytes >= 999.5 && unit + 1 < kUnits.size()) {
-    bytes /= 1000;
-    ++unit;
+std::string count_text(double count) {
+  constexpr std::array<const char*, 5> kPrefixes = {"", " k", " M", " G", " T"};
+  size_t power = 0;
+  while (count >= 999.5 && power + 1 < kPrefixes.size()) {
+    count /= 1000;
+    ++power;
   }
-  return unit == 0 ? fmt::format("{:.0f} bytes", bytes)
-                   : fmt::format("{:.3g} {}", bytes, kUnits[unit]);
+  return fmt::format("{:.3g}{}", count, kPrefixes[power]);
+}
+
+std::string bytes_text(double bytes) {
+  return bytes < 999.5 ? fmt::format("{:.0f} bytes", bytes) : count_text(bytes) + "B";
 }
 
 }  // namespace burnish::tools

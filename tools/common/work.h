@@ -49,7 +49,9 @@ void write_json(const std::string& path, const nlohmann::ordered_json& document)
 /// Writes text, whole or not at all.
 void write_text(const std::string& path, const std::string& text);
 
-/// "1.5 MB": bytes for people, in powers of 1000.
+/// "1.5 M": a count for people, to three digits, in powers of 1000.
+std::string count_text(double count);
+/// "1.5 MB".
 std::string bytes_text(double bytes);
 
 }  // namespace burnish::tools
