@@ -87,6 +87,7 @@ TEST_F(IncludeRules, RejectPrivateHeadersOutsideTheirPlace) {
   EXPECT_EQ(objections("formats/include/burnish/formats/a.h", "<hdf5.h>"), 1u);
   EXPECT_EQ(objections("precompute/include/burnish/precompute/a.h", "<tbb/parallel_for.h>"), 1u);
   EXPECT_EQ(objections("runtime/src/a.cpp", "BURNISH_SOME_HEADER"), 1u);
+  EXPECT_EQ(objections("runtime/src/a.cpp", "<iostream>\n  #  include <hdf5.h>  // storage"), 1u);
 }
 
 TEST_F(IncludeRules, CountsNoFilesWhereThereAreNone) {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <fstream>
-#include <regex>
+#include <optional>
 
 namespace burnish {
 namespace fs = std::filesystem;
@@ -51,11 +51,27 @@ std::string objection(const fs::path& root, size_t layer, const fs::path& file, 
   return is_public ? "not among the headers of the layer's interface" : "";
 }
 
+/// What follows #include in a line; nothing in any other line.
+std::optional<std::string> include_operand(std::string_view line) {
+  for (const std::string_view token : {"#", "include"}) {
+    line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+    if (!line.starts_with(token)) return std::nullopt;
+    line.remove_prefix(token.size());
+  }
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+  return std::string(line);
+}
+
+/// The header of `<header>` or `"header"`, whatever follows; empty for anything else.
+std::string header_name(std::string_view operand) {
+  if (operand.empty() || (operand[0] != '<' && operand[0] != '"')) return {};
+  const size_t end = operand.find(operand[0] == '<' ? '>' : '"', 1);
+  return end == std::string_view::npos ? "" : std::string(operand.substr(1, end - 1));
+}
+
 }  // namespace
 
 IncludeReport check_includes(const fs::path& root, size_t layer) {
-  static const std::regex directive(R"(^\s*#\s*include\b\s*(.*))");
-  static const std::regex name(R"(^[<"]([^>"]+)[>"].*)");
   const fs::path folder = root / layers()[layer].folder;
   IncludeReport report;
   if (!fs::is_directory(folder)) return report;
@@ -67,15 +83,14 @@ IncludeReport check_includes(const fs::path& root, size_t layer) {
     std::ifstream in(file);
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {
-      std::smatch include, header;
-      if (!std::regex_match(line, include, directive)) continue;
-      const std::string operand = include[1];
-      const std::string why = std::regex_match(operand, header, name)
-                                  ? objection(root, layer, file, is_public, header[1])
-                                  : "cannot tell what is included";
+      const std::optional<std::string> operand = include_operand(line);
+      if (!operand) continue;
+      const std::string header = header_name(*operand);
+      const std::string why = header.empty() ? "cannot tell what is included"
+                                             : objection(root, layer, file, is_public, header);
       if (why.empty()) continue;
       report.violations.push_back(file.lexically_relative(root).string() + ":" +
-                                  std::to_string(number) + ": " + operand + ": " + why);
+                                  std::to_string(number) + ": " + *operand + ": " + why);
     }
   }
   return report;
