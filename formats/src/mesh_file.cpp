@@ -14,6 +14,7 @@
 
 #include "burnish/formats/error.h"
 #include "burnish/formats/polygon_triangulation.h"
+#include "file_bytes.h"
 #include "mesh/mesh_text.h"
 #include "mesh/mesh_transcript.h"
 #include "mesh/polygon_soup.h"
@@ -40,8 +41,11 @@ MeshTranscript transcribe(const std::string& path) {
                                         {".stl", detail::transcribe_stl}};
   const std::string extension = std::filesystem::path(path).extension().string();
   for (const Format& format : kFormats)
-    if (detail::equals_ignoring_case(extension, format.extension))
-      return format.transcriber(path, detail::read_file_bytes(path));
+    if (detail::equals_ignoring_case(extension, format.extension)) {
+      std::string bytes = read_file_bytes(path);
+      if (bytes.empty()) throw Error(ErrorKind::input, path, "is empty (0 bytes), expected a mesh");
+      return format.transcriber(path, std::move(bytes));
+    }
   std::error_code error;
   if (!std::filesystem::exists(path, error))
     throw Error(ErrorKind::input, path, "cannot open: no such file");

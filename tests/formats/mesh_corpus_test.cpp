@@ -168,7 +168,7 @@ const std::set<std::string> kRefused = {
 void expect_truthful(const fs::path& path) {
   SCOPED_TRACE(path.string());
   if (kRefused.contains(path.filename().string())) {
-    error_of(path.string());
+    refusal_of(path.string());
     return;
   }
   LoadedMesh loaded;

@@ -67,59 +67,59 @@ TEST(MeshMalformed, EachFileIsRefusedWithPlaceAndReason) {
     ++files;
     ASSERT_TRUE(kRefusals.contains(name)) << name << " has no expected message";
     const Refusal& refusal = kRefusals.at(name);
-    const std::string message = error_of(entry.path().string(), refusal.kind);
+    const std::string message = refusal_of(entry.path().string(), refusal.kind);
     EXPECT_NE(message.find(refusal.words), message.npos) << message;
   }
   EXPECT_EQ(files, kRefusals.size());
 }
 
 TEST(MeshMalformed, RejectsWhatIsNoReadableFile) {
-  const TemporaryFolder folder;
-  EXPECT_NE(error_of(folder.file("none.obj")).find("No such file"), std::string::npos);
-  EXPECT_NE(error_of(folder.file("none")).find("no such file"), std::string::npos);
-  EXPECT_NE(error_of(folder.write("empty.obj", "")).find("empty"), std::string::npos);
-  std::filesystem::create_directory(folder.path() / "folder.obj");
-  EXPECT_NE(error_of(folder.file("folder.obj")).find("folder"), std::string::npos);
-  const std::string message = error_of(folder.write("mesh.fbx", "x"), ErrorKind::unsupported);
+  const InputFolder folder;
+  EXPECT_NE(refusal_of(folder.file("none.obj")).find("No such file"), std::string::npos);
+  EXPECT_NE(refusal_of(folder.file("none")).find("no such file"), std::string::npos);
+  EXPECT_NE(refusal_of(folder.write("empty.obj", "")).find("empty"), std::string::npos);
+  std::filesystem::create_directory(folder.file("folder.obj"));
+  EXPECT_NE(refusal_of(folder.file("folder.obj")).find("folder"), std::string::npos);
+  const std::string message = refusal_of(folder.write("mesh.fbx", "x"), ErrorKind::unsupported);
   EXPECT_NE(message.find("'.fbx', expected .obj, .ply, .off or .stl"), message.npos);
 }
 
 TEST(MeshMalformed, MessagesStayOneShortLine) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const std::string junk = std::string(5000, 'x') + "\x01\x1b[31m\xff";
   const std::string path = folder.write("a.obj", "v " + junk + " 0 0\n");
-  EXPECT_LT(error_of(path).size(), path.size() + 200);
+  EXPECT_LT(refusal_of(path).size(), path.size() + 200);
 }
 
 TEST(MeshMalformed, RejectsPolygonsTooLargeToTriangulate) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf";
   for (size_t i = 0; i <= kMaxPolygonCorners; ++i) text += " 1";
-  const std::string message = error_of(folder.write("a.obj", text), ErrorKind::unsupported);
+  const std::string message = refusal_of(folder.write("a.obj", text), ErrorKind::unsupported);
   EXPECT_NE(message.find("expected at most"), message.npos);
 }
 
 TEST(MeshMalformed, EveryTruncationOfABinaryFileIsRefused) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   for (const auto& [name, bytes] :
        {std::pair<std::string, std::string>{"a.ply", binary_cube_ply(false)},
         {"b.ply", binary_cube_ply(true)},
         {"c.stl", binary_cube_stl()}})
     for (size_t length = 0; length < bytes.size(); ++length) {
       const std::string path = folder.write(name, std::string_view(bytes).substr(0, length));
-      EXPECT_NE(error_of(path), "") << name << " cut to " << length;
+      EXPECT_NE(refusal_of(path), "") << name << " cut to " << length;
     }
 }
 
 // A text may be cut inside its last number, which no reader can know; so cuts are made where words
 // end. A prefix that still holds all words is the whole mesh.
 TEST(MeshMalformed, EveryTruncationOfACountedTextIsRefused) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   for (const std::string name : {"cube.ply", "cube.off"}) {
     const std::string text = read_bytes(mesh_data(name));
     const size_t words_end = text.find_last_not_of(" \n") + 1;
     for (size_t length = 0; length < words_end; ++length)
-      error_of(folder.write(name, std::string_view(text).substr(0, length)));
+      refusal_of(folder.write(name, std::string_view(text).substr(0, length)));
     for (size_t length = words_end; length <= text.size(); ++length) {
       const LoadedMesh whole = load(folder.write(name, std::string_view(text).substr(0, length)));
       EXPECT_EQ(whole.mesh.triangles.size(), 12u);
@@ -128,7 +128,7 @@ TEST(MeshMalformed, EveryTruncationOfACountedTextIsRefused) {
 }
 
 TEST(MeshMalformed, EveryTruncationOfAnStlTextIsRefusedOrNoted) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const std::string text = read_bytes(mesh_data("cube.stl"));
   const size_t whole = text.rfind("endsolid") + 8;
   size_t noted = 0;
@@ -158,7 +158,7 @@ std::pair<size_t, size_t> count_obj_lines(const std::string& text) {
 }
 
 TEST(MeshMalformed, EveryTruncationOfAnObjIsRefusedOrCountedAsItIs) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const std::string text = read_bytes(mesh_data("cube.obj"));
   size_t loaded = 0;
   for (size_t length = 0; length < text.size(); ++length) {
@@ -206,7 +206,7 @@ TEST(MeshMalformed, MutatedFilesEndInAMeshOrAnError) {
   constexpr unsigned kSeed = 20240611;
   constexpr int kRounds = 500;
   SCOPED_TRACE(testing::Message() << "seed " << kSeed);
-  const TemporaryFolder folder;
+  const InputFolder folder;
   std::mt19937 random(kSeed);
   const std::vector<std::pair<std::string, std::string>> samples = {
       {"a.obj", read_bytes(mesh_data("cube_hard_edges.obj"))},

@@ -52,14 +52,14 @@ TEST(MeshReading, CubeInEveryTextFormat) {
 }
 
 TEST(MeshReading, CubeInEveryBinaryFormat) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   expect_cube(load(folder.write("little.ply", binary_cube_ply(false))), "little-endian PLY");
   expect_cube(load(folder.write("big.ply", binary_cube_ply(true))), "big-endian PLY");
   expect_cube(load(folder.write("cube.STL", binary_cube_stl())), "binary STL", 12);
 }
 
 TEST(MeshReading, FormatIsNamed) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   EXPECT_EQ(load(mesh_data("cube.obj")).report.format, "OBJ");
   EXPECT_EQ(load(mesh_data("cube.ply")).report.format, "PLY ascii");
   EXPECT_EQ(load(folder.write("a.ply", binary_cube_ply(true))).report.format,
@@ -100,7 +100,7 @@ TEST(MeshReading, HardEdgesAndSeamsSplitFileVertices) {
 
 TEST(MeshReading, EachCornerGetsItsOwnNormalAndUv) {
   // A square of two triangles: at one end of the diagonal normals differ, at the other UVs.
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const LoadedMesh square = load(folder.write("a.obj",
                                               "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
                                               "vn 0 0 1\nvn 0 0.6 0.8\nvt 0 0\nvt .25 .5\n"
@@ -118,7 +118,7 @@ TEST(MeshReading, EachCornerGetsItsOwnNormalAndUv) {
 }
 
 TEST(MeshReading, CornersWithoutNormalOrUvAreComputedAndCounted) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const LoadedMesh mixed = load(folder.write("a.obj",
                                              "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
                                              "vn 0 0 5\nvn 0 0 0\nvn nan 0 1\nvn 1 2\nvt 0 0\n"
@@ -148,7 +148,7 @@ TEST(MeshReading, FacesKeepTheirOrderAndCorners) {
 }
 
 TEST(MeshReading, RepeatedCornersStayAndShortFacesAreCounted) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   // A square annulus as one polygon with a bridge; a face that folds onto itself; short faces.
   const LoadedMesh mesh =
       load(folder.write("a.obj",
@@ -166,7 +166,7 @@ TEST(MeshReading, RepeatedCornersStayAndShortFacesAreCounted) {
 
 TEST(MeshReading, ObjDialectsMeanTheSameCube) {
   const std::string cube = read_bytes(mesh_data("cube.obj"));
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const auto replaced = [](std::string text, const std::string& from, const std::string& to) {
     for (size_t at = 0; (at = text.find(from, at)) != text.npos; at += to.size())
       text.replace(at, from.size(), to);
@@ -198,7 +198,7 @@ TEST(MeshReading, ObjDialectsMeanTheSameCube) {
 }
 
 TEST(MeshReading, ObjElementsThatAreNoFacesAreCounted) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const LoadedMesh mesh = load(folder.write(
       "a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\np 1\nl 1 2\nf 1 2 3\nnonsense here\ncurv 0 1 1 2\n"));
   EXPECT_EQ(mesh.report.ignored_elements, 3u);
@@ -209,7 +209,7 @@ TEST(MeshReading, ObjElementsThatAreNoFacesAreCounted) {
 TEST(MeshReading, PlyWithPropertiesThatOpenMeshMisreads) {
   // A list in the vertices, properties before the indices, counts of other types, an element in
   // between, an unused list behind, and texture_u, texture_v.
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const LoadedMesh mesh = load(folder.write(
       "a.ply",
       "ply\nformat ascii 1.0\nobj_info element face 7\ncomment end_header\nelement vertex 3\n"
@@ -228,7 +228,7 @@ TEST(MeshReading, PlyWithPropertiesThatOpenMeshMisreads) {
 
 TEST(MeshReading, PlyTriangleStripsAlternateTheirOrientation) {
   // A strip of four triangles in the plane z = 0, a restart, and a single triangle: all face up.
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const LoadedMesh mesh = load(folder.write(
       "a.ply",
       "ply\nformat ascii 1.0\nelement vertex 6\nproperty float x\nproperty float y\n"
@@ -241,7 +241,7 @@ TEST(MeshReading, PlyTriangleStripsAlternateTheirOrientation) {
 }
 
 TEST(MeshReading, PlyNormalsThatAreNotUsableAreComputed) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const LoadedMesh mesh = load(
       folder.write("a.ply",
                    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
@@ -256,7 +256,7 @@ TEST(MeshReading, PlyNormalsThatAreNotUsableAreComputed) {
 }
 
 TEST(MeshReading, OffVariants) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const std::string cube = read_bytes(mesh_data("cube.off"));
   const std::string glued = "OFF8 6 12" + cube.substr(cube.find("12\n") + 2);
   expect_cube(load(folder.write("a.off", glued)), "counts glued to the keyword");
@@ -278,7 +278,7 @@ TEST(MeshReading, OffVariants) {
 }
 
 TEST(MeshReading, StlOddities) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const std::string cube = read_bytes(mesh_data("cube.stl"));
   expect_cube(load(folder.write("a.stl", "solid outer shell\n" + cube.substr(cube.find('\n') + 1))),
               "a name with 'outer'", 12);
@@ -303,7 +303,7 @@ TEST(MeshReading, StlOddities) {
 }
 
 TEST(MeshReading, DegenerateTrianglesAreLeftOutAndCounted) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const LoadedMesh mesh = load(folder.write(
       "a.obj",
       "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 0 1 0\nv 0 0 0\nf 1 2 3\nf 1 5 4\nf 1 2 4\nf 2 3 4\n"));
@@ -319,7 +319,7 @@ TEST(MeshReading, DegenerateTrianglesAreLeftOutAndCounted) {
 
 TEST(MeshReading, ComputedNormalsAreSharedAcrossSeamsAndNotAcrossEdges) {
   // Two squares with file vertices of their own along the fold x = 1.
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const std::string faces = "f 1 2 3 4\nf 5 6 7 8\n";
   // Far edge at (1.9, y, 0.2): a fold of 12.5 degrees. At (1, y, 1): one of 90 degrees.
   const std::string gentle =
@@ -345,7 +345,7 @@ struct DecimalComma : std::numpunct<char> {
 };
 
 TEST(MeshReading, DoesNotDependOnTheLocaleOfTheProgram) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const std::string path = folder.write("a.obj", "v 0 0 0\nv 1.5 0 0\nv 0 2.25 0\nf 1 2 3\n");
   const std::locale before = std::locale::global(std::locale(std::locale(), new DecimalComma));
   const LoadedMesh mesh = load(path);
@@ -357,7 +357,7 @@ TEST(MeshReading, DoesNotDependOnTheLocaleOfTheProgram) {
 }
 
 TEST(MeshReading, SeveralThreadsAtOnce) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const std::vector<std::string> paths = {mesh_data("cube.obj"), mesh_data("cube.off"),
                                           mesh_data("cube.stl"),
                                           folder.write("a.ply", binary_cube_ply(false))};
@@ -376,7 +376,7 @@ TEST(MeshReading, SeveralThreadsAtOnce) {
 }
 
 TEST(MeshReading, PrintsNothing) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   read_mesh(folder.write("a.obj",

@@ -2,9 +2,6 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <random>
 #include <string>
 #include <string_view>
 
@@ -12,6 +9,7 @@
 
 #include "burnish/formats/error.h"
 #include "burnish/formats/mesh_file.h"
+#include "files.h"
 
 namespace burnish::test {
 
@@ -25,38 +23,13 @@ inline std::filesystem::path shared_data() {
   return std::filesystem::path(BURNISH_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
-inline std::string read_bytes(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  EXPECT_TRUE(in.good()) << path << ": missing";
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-/// A folder of its own, removed at the end.
-class TemporaryFolder {
+/// A folder for files that are to be read.
+class InputFolder : public TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::random_device random;
-    path_ = std::filesystem::temp_directory_path() / ("burnish-test-" + std::to_string(random()));
-    std::filesystem::create_directories(path_);
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  const std::filesystem::path& path() const { return path_; }
-  std::string file(const std::string& name) const { return (path_ / name).string(); }
   std::string write(const std::string& name, std::string_view bytes) const {
-    std::ofstream out(path_ / name, std::ios::binary);
-    out.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-    EXPECT_TRUE(out.good());
+    write_bytes(file(name), std::string(bytes));
     return file(name);
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 struct LoadedMesh {
@@ -101,21 +74,14 @@ inline void expect_consistent(const LoadedMesh& loaded, const std::string& name)
     for (const std::uint32_t v : triangle) ASSERT_LT(v, count);
 }
 
-/// The message of the Error that reading throws; fails when it throws none, or not one line that
-/// begins with the file.
-inline std::string error_of(const std::string& path, ErrorKind kind = ErrorKind::input) {
-  try {
-    read_mesh(path);
-  } catch (const Error& error) {
-    const std::string message = error.what();
-    EXPECT_EQ(error.kind(), kind) << message;
-    EXPECT_TRUE(message.starts_with(path + ": ")) << message;
-    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
-    for (const char c : message.substr(path.size())) EXPECT_TRUE(c >= ' ' && c <= '~') << message;
-    return message;
-  }
-  ADD_FAILURE() << path << " was read, expected an Error";
-  return {};
+/// The message with which reading is refused; a failure when it is not, or not in one line of
+/// printable characters.
+inline std::string refusal_of(const std::string& path, ErrorKind kind = ErrorKind::input) {
+  const std::string message = error_of(
+      path, [&] { read_mesh(path); }, kind);
+  EXPECT_NE(message, "") << path << " was read, expected an Error";
+  for (const char c : message) EXPECT_TRUE(c >= ' ' && c <= '~') << message;
+  return message;
 }
 
 /// Volume enclosed by a mesh, by the divergence theorem: positive when normals point outward.

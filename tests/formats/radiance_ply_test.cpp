@@ -1,11 +1,8 @@
 #include "burnish/formats/radiance_ply.h"
 
 #include <cmath>
-#include <csignal>
 #include <cstring>
 #include <stdexcept>
-
-#include <sys/resource.h>
 
 #include "mesh_test_support.h"
 
@@ -25,7 +22,7 @@ int srgb_byte(double linear) {
 }
 
 TEST(RadiancePly, HoldsExactlyWhatWasGiven) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   for (const float stops : {0.f, 1.f, -3.f}) {
     write_radiance_ply(folder.file("a.ply"), kPositions, kNormals, kRadiance, kTriangles, stops);
     const std::string bytes = read_bytes(folder.file("a.ply"));
@@ -52,7 +49,7 @@ TEST(RadiancePly, HoldsExactlyWhatWasGiven) {
 }
 
 TEST(RadiancePly, ReadsBackAsAMesh) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   write_radiance_ply(folder.file("a.ply"), kPositions, kNormals, kRadiance, kTriangles);
   const LoadedMesh mesh = load(folder.file("a.ply"));
   expect_consistent(mesh, "a.ply");
@@ -63,7 +60,7 @@ TEST(RadiancePly, ReadsBackAsAMesh) {
 }
 
 TEST(RadiancePly, RejectsSizesThatDifferAndIndicesOutOfRange) {
-  const TemporaryFolder folder;
+  const InputFolder folder;
   const std::string path = folder.file("a.ply");
   const std::span<const Vector3f> two(kPositions.data(), 2);
   EXPECT_THROW(write_radiance_ply(path, two, kNormals, kRadiance, {}), std::invalid_argument);
@@ -73,33 +70,10 @@ TEST(RadiancePly, RejectsSizesThatDifferAndIndicesOutOfRange) {
   EXPECT_FALSE(std::filesystem::exists(path));
 }
 
-TEST(RadiancePly, FullDiskIsAnErrorAndLeavesTheOldFile) {
-  const TemporaryFolder folder;
-  const std::string path = folder.write("a.ply", "old");
-  const std::vector<Vector3f> positions(10000, Vector3f::Zero());
-  const std::vector<Rgb> radiance(10000, Rgb::Zero());
-  // A limit on the size of files fails like a disk that is full.
-  rlimit before = {};
-  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
-  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
-  const rlimit small = {4096, before.rlim_max};
-  ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  bool failed = false;
-  try {
-    write_radiance_ply(path, positions, positions, radiance, {});
-  } catch (const Error& error) {
-    failed = error.kind() == ErrorKind::output;
-  }
-  setrlimit(RLIMIT_FSIZE, &before);
-  std::signal(SIGXFSZ, handler);
-  EXPECT_TRUE(failed);
-  EXPECT_EQ(read_bytes(path), "old");
-  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder.path()), {}), 1);
-}
-
-TEST(RadiancePly, MissingFolderIsAnError) {
-  const TemporaryFolder folder;
-  EXPECT_THROW(write_radiance_ply(folder.file("none/a.ply"), {}, {}, {}, {}), Error);
+TEST(RadiancePly, FailureLeavesTheOldFileAndNothingElse) {
+  expect_output_survives_failure("a.ply", [](const std::string& path) {
+    write_radiance_ply(path, kPositions, kNormals, kRadiance, kTriangles);
+  });
 }
 
 }  // namespace

@@ -1,16 +1,9 @@
 #include "mesh_text.h"
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
-#include <filesystem>
 #include <limits>
-#include <memory>
-
-#include "burnish/formats/error.h"
 
 namespace burnish::detail {
 namespace {
@@ -50,26 +43,6 @@ bool parse_number(std::string_view word, T& value) {
 }
 
 }  // namespace
-
-std::string read_file_bytes(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error))
-    throw Error(ErrorKind::input, path, "is a folder, expected a mesh file");
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
-  if (!file)
-    throw Error(ErrorKind::input, path, std::string("cannot open: ") + std::strerror(errno));
-  std::string bytes;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (!error) bytes.reserve(static_cast<size_t>(size));
-  char block[1 << 16];
-  while (const size_t count = std::fread(block, 1, sizeof block, file.get()))
-    bytes.append(block, count);
-  if (std::ferror(file.get()))
-    throw Error(ErrorKind::input, path, std::string("cannot read: ") + std::strerror(errno));
-  if (bytes.empty()) throw Error(ErrorKind::input, path, "is empty (0 bytes), expected a mesh");
-  return bytes;
-}
 
 std::string decode_text(std::string bytes) {
   const std::string_view view = bytes;

@@ -4,11 +4,8 @@
 #include <string>
 #include <string_view>
 
-/// The small change of reading mesh files: bytes, lines, words, numbers.
+/// The small change of reading mesh files: lines, words, numbers.
 namespace burnish::detail {
-
-/// Reads a whole file. Throws Error(ErrorKind::input) when it cannot be read or is empty.
-std::string read_file_bytes(const std::string& path);
 
 /// Text as one byte a character with '\n' between lines: a UTF-8 byte order mark is removed, UTF-16
 /// (either order, told by its mark) is narrowed, with '?' for what is not ASCII; where '\r' alone
