@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdlib>
-#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -15,12 +13,6 @@ namespace burnish::test {
 
 inline std::string mesh_data(const std::string& name) {
   return std::string(BURNISH_TEST_DATA) + "/meshes/" + name;
-}
-
-/// The data folder that lies beside the sources, or wherever BURNISH_SHARED_DATA says.
-inline std::filesystem::path shared_data() {
-  if (const char* folder = std::getenv("BURNISH_SHARED_DATA")) return folder;
-  return std::filesystem::path(BURNISH_SOURCE_DIR) / ".." / "shared" / "data";
 }
 
 /// A folder for files that are to be read.
