@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 
 const std::vector<Layer>& layers() {
   static const std::vector<Layer> all = {
-      {"runtime", {"Eigen/"}, {"hwy/"}},
+      {"runtime", {"Eigen/", "unsupported/Eigen/"}, {"hwy/"}},
       {"formats",
        {"Eigen/"},
        {"OpenMesh/", "OpenEXR/", "Imath/", "png.h", "stb/", "hdf5.h", "H5Cpp.h", "nlohmann/",
@@ -17,7 +17,8 @@ const std::vector<Layer>& layers() {
       {"precompute", {"Eigen/"}, {"embree3/", "embree4/", "tbb/", "ceres/", "fmt/"}},
       {"tools",
        {},
-       {"CLI/", "Eigen/", "nlohmann/", "fmt/", "tbb/", "signal.h", "unistd.h", "sys/"}},
+       {"CLI/", "Eigen/", "benchmark/", "nlohmann/", "fmt/", "tbb/", "signal.h", "unistd.h",
+        "sys/"}},
   };
   return all;
 }
