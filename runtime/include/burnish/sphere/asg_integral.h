@@ -5,7 +5,7 @@
 #include <type_traits>
 
 #include "burnish/sphere/direction.h"
-#include "burnish/sphere/spherical_gaussian.h"
+#include "burnish/sphere/special_functions.h"
 
 /// The integral of a unit-amplitude ASG over the sphere. Since (v . z) dv = dx dy, it is that of a
 /// plain 2-D Gaussian over the unit disc. Derivations and error: docs/maths.md, "ASG integral".
@@ -20,29 +20,6 @@ enum class AsgIntegral {
 template <class T>
 T asg_integral_fast(T bandwidth_x, T bandwidth_y) {
   return kPi<T> / (std::sqrt(bandwidth_x) * std::sqrt(bandwidth_y));
-}
-
-/// exp(-x) I0(x) for x >= 0: Abramowitz & Stegun 9.8.1 and 9.8.2, relative error 2e-7.
-template <class T>
-T scaled_bessel_i0(T x) {
-  if (x < T(3.75)) {
-    const T t = x / T(3.75) * (x / T(3.75));
-    return std::exp(-x) *
-           (1 + t * (T(3.5156229) +
-                     t * (T(3.0899424) +
-                          t * (T(1.2067492) +
-                               t * (T(0.2659732) + t * (T(0.0360768) + t * T(0.0045813)))))));
-  }
-  const T t = T(3.75) / x;
-  return (T(0.39894228) +
-          t * (T(0.01328592) +
-               t * (T(0.00225319) +
-                    t * (T(-0.00157565) +
-                         t * (T(0.00916281) +
-                              t * (T(-0.02057706) +
-                                   t * (T(0.02635537) +
-                                        t * (T(-0.01647633) + t * T(0.00392377))))))))) /
-         std::sqrt(x);
 }
 
 template <class T>

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "burnish/sphere/direction.h"
+#include "burnish/sphere/special_functions.h"
 
 /// Based on: spherical Gaussians (wang2009svbrdf). The forms below are those that stay accurate at
 /// small and at large sharpness; the textbook forms cancel or overflow there.
@@ -20,12 +21,6 @@ template <class T>
 T eval(const SphericalGaussian<T>& lobe, const Vector3<T>& direction) {
   return lobe.amplitude *
          std::exp(T(-0.5) * lobe.sharpness * (direction - lobe.axis).squaredNorm());
-}
-
-/// (1 - exp(-x)) / x for x >= 0, accurate near zero.
-template <class T>
-T one_minus_exp_over(T x) {
-  return x > 0 ? -std::expm1(-x) / x : T(1);
 }
 
 /// Integral over the sphere; 4 pi * amplitude at sharpness 0.
