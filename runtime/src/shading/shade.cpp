@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "burnish/light/lobe_moments.h"
-#include "burnish/material/spherical_warp.h"
+#include "burnish/sphere/spherical_warp.h"
 #include "burnish/visibility/ssdf.h"
 
 // Based on: xu2013asg, section 6 (Eq. 29, 30), over the SSDF visibility of wang2009svbrdf. Where we
@@ -158,7 +158,7 @@ Rgb specular_radiance(const ShadingPoint& point, const Vector3f& outgoing, const
                       const ShadingOptions& options) {
   AnisotropicGaussian<float> half_lobe = specular_lobe(material);
   half_lobe.frame = point.frame;
-  const AnisotropicGaussian<float> lobe = warp_to_incoming(half_lobe, outgoing);
+  const AnisotropicGaussian<float> lobe = warp_to_incoming(half_lobe, outgoing).lobe;
   const float cosine = lobe.frame.z.dot(point.frame.z);
   if (lobe.amplitude <= 0 || cosine <= 0) return Rgb::Zero();
   const SsdfSample boundary = visibility.lookup(lobe.frame.z);
