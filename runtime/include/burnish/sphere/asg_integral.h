@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <type_traits>
 
@@ -8,61 +9,89 @@
 #include "burnish/sphere/special_functions.h"
 
 /// The integral of a unit-amplitude ASG over the sphere. Since (v . z) dv = dx dy, it is that of a
-/// plain 2-D Gaussian over the unit disc. Derivations and error: docs/maths.md, "ASG integral".
+/// plain 2-D Gaussian over the unit disc: between 0 and pi. Derivations: docs/maths.md, "ASG
+/// integral". Every level takes bandwidths from 0 to the largest finite number.
 namespace burnish {
 
 enum class AsgIntegral {
-  fast,    ///< pi / sqrt(bandwidth_x bandwidth_y), xu2013asg Eq. 11: 0.7 % for bandwidths > 5
-  series,  ///< xu2013asg Eq. 10: 0.03 % for bandwidths > 5, 5 % > 1; falls back to exact below 1
-  exact,   ///< to rounding: 1e-6 in float, 1e-12 in double, bandwidths 0..1e8
+  fast,    ///< xu2013asg Eq. 11, at most pi: 0.68 % for bandwidths > 5, 58 % > 1, 7x below
+  series,  ///< xu2013asg Eq. 10: 0.027 % for bandwidths > 5, 5.2 % > 1; below 1 it is `exact`
+  exact,   ///< to rounding: 4e-7 in float, 6e-15 in double, for all bandwidths
 };
 
+/// pi / sqrt(bandwidth_x bandwidth_y), the whole plane's integral, held to the disc's area.
 template <class T>
 T asg_integral_fast(T bandwidth_x, T bandwidth_y) {
-  return kPi<T> / (std::sqrt(bandwidth_x) * std::sqrt(bandwidth_y));
+  // The product of the roots: a product of bandwidths overflows and underflows.
+  return std::min(kPi<T> / (std::sqrt(bandwidth_x) * std::sqrt(bandwidth_y)), kPi<T>);
+}
+
+/// A disc Gaussian in polar coordinates whose azimuth psi is that of an ellipse: tan(azimuth) =
+/// tan(psi) sqrt((bandwidth_x + offset) / (bandwidth_y + offset)). Equal steps in psi then follow
+/// the lobe, however long, and
+///   integral = pi / sqrt((bandwidth_x + offset) (bandwidth_y + offset)) * mean of g(psi),
+///   g = (k + offset) (1 - exp(-k)) / k, k the bandwidth along the azimuth.
+/// g depends on psi through cos(2 psi) only, and is between 1 and max(offset, 1.3).
+template <class T>
+struct AsgAzimuth {
+  T cos_squared, sin_squared;  ///< of the azimuth, measured from x
+  T bandwidth;                 ///< k
+};
+
+/// The azimuth at psi, for bandwidth_x >= bandwidth_y; squeeze = (bandwidth_y + offset) /
+/// (bandwidth_x + offset).
+template <class T>
+AsgAzimuth<T> asg_azimuth(T bandwidth_x, T bandwidth_y, T squeeze, T cos_squared_psi) {
+  const T x = squeeze * cos_squared_psi, y = 1 - cos_squared_psi;
+  const T scale = 1 / (x + y);
+  return {x * scale, y * scale, bandwidth_x * (x * scale) + bandwidth_y * (y * scale)};
+}
+
+/// cos^2 at the midpoints of N equal steps of a quarter turn. In cos(2 psi) they are the nodes of
+/// Gauss-Chebyshev quadrature.
+template <class T, int N>
+const std::array<T, N>& quarter_turn_cosines_squared() {
+  static const std::array<T, N> table = [] {
+    std::array<T, N> cosines;
+    for (int i = 0; i < N; ++i) {
+      const double c = std::cos((i + 0.5) / N * kPi<double> / 2);
+      cosines[i] = T(c * c);
+    }
+    return cosines;
+  }();
+  return table;
+}
+
+/// The integral by N midpoints of a quarter turn of psi. The worst relative error over all
+/// bandwidths from 0 on falls by seven with each point, because the offset keeps exp(-k) away from
+/// its essential singularity: N = 1: 4.4 %, 2: 0.40 %, 3: 0.052 %, 4: 7.2e-5, 5: 9.7e-6, 6: 1.3e-6,
+/// 7: 2e-7, 8: 3e-8, 18: 3e-15. No branch, one exp a point.
+template <int N, class T>
+T asg_integral_midpoints(T bandwidth_x, T bandwidth_y) {
+  // The offset of the smallest worst error, found by search.
+  constexpr T kOffset = N == 1   ? T(2.5)
+                        : N == 2 ? T(2.75)
+                        : N <= 4 ? T(6)
+                        : N <= 6 ? T(9)
+                                 : T(12.5);
+  const T large = std::max(bandwidth_x, bandwidth_y), small = std::min(bandwidth_x, bandwidth_y);
+  const T squeeze = (small + kOffset) / (large + kOffset);
+  T sum = 0;
+  for (const T cos_squared : quarter_turn_cosines_squared<T, N>()) {
+    const T k = asg_azimuth(large, small, squeeze, cos_squared).bandwidth;
+    sum += (k + kOffset) * one_minus_exp_over(k);
+  }
+  return kPi<T> / (std::sqrt(large + kOffset) * std::sqrt(small + kOffset)) * (sum / T(N));
 }
 
 template <class T>
 T asg_integral_exact(T bandwidth_x, T bandwidth_y) {
   constexpr bool is_float = std::is_same_v<T, float>;
-  // Where each branch takes over, and how long its series is: chosen so that the error stays below
-  // 3e-7 (float) and 1e-13 (double) over [0, 1e8]^2.
-  constexpr T kAsymptoticFrom = is_float ? T(14) : T(28.5);
-  constexpr T kSeriesFrom = is_float ? T(8) : T(25);
-  constexpr int kSeriesTerms = is_float ? 5 : 12;
-  constexpr int kTrapezoidPoints = is_float ? 9 : 22;
-
-  const T large = std::max(bandwidth_x, bandwidth_y), small = std::min(bandwidth_x, bandwidth_y);
-  if (small > kAsymptoticFrom) return asg_integral_fast(large, small);
-  const T half_difference = (large - small) / 2;
-  if (half_difference > kSeriesFrom) {
-    const T root_small = std::sqrt(small), root_difference = std::sqrt(large - small);
-    const T erf_over_root = small > 0 ? std::erf(root_small) / root_small : 2 / std::sqrt(kPi<T>);
-    const T leading =
-        erf_over_root / root_difference -
-        root_small / (std::sqrt(large) * root_difference * (std::sqrt(large) + root_difference));
-    // Exponential integrals E_{j+1/2}(small), by recurrence from E_{1/2} = sqrt(pi / small)
-    // erfc(sqrt(small)).
-    const T exp_small = std::exp(-small);
-    T e = (exp_small - std::sqrt(kPi<T>) * root_small * std::erfc(root_small)) / T(0.5);  // E_{3/2}
-    T coefficient = 1, power = 1, sum = 0;
-    for (int j = 1; j <= kSeriesTerms; ++j) {
-      const T odd = T(2 * j - 1);
-      coefficient *= odd * odd / T(8 * j);
-      power /= half_difference;
-      sum += coefficient * power * e;
-      e = (exp_small - small * e) / (T(j) + T(0.5));
-    }
-    return kPi<T> * leading - std::sqrt(kPi<T> / (large - small)) * sum;
-  }
-  T sum = 0;
-  for (int i = 0; i < kTrapezoidPoints; ++i) {
-    const T phi = kPi<T> / 2 * T(i) / T(kTrapezoidPoints - 1);
-    const T c = std::cos(phi), s = std::sin(phi);
-    const T value = one_minus_exp_over(large * c * c + small * s * s);
-    sum += (i == 0 || i == kTrapezoidPoints - 1) ? value / 2 : value;
-  }
-  return kPi<T> / T(kTrapezoidPoints - 1) * sum;
+  // What the disc's edge cuts off is exp(-bandwidth): below the last bit from here on.
+  constexpr T kEdgeOutOfSight = is_float ? T(17) : T(37);
+  if (std::min(bandwidth_x, bandwidth_y) > kEdgeOutOfSight)
+    return asg_integral_fast(bandwidth_x, bandwidth_y);
+  return asg_integral_midpoints < is_float ? 7 : 18 > (bandwidth_x, bandwidth_y);
 }
 
 template <class T>
