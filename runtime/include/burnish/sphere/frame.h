@@ -1,5 +1,7 @@
 #pragma once
 
+#include <limits>
+
 #include "burnish/sphere/direction.h"
 
 namespace burnish {
@@ -41,6 +43,26 @@ Frame<T> frame_from_normal_tangent(const Vector3<T>& normal, const Vector3<T>& t
     return frame_from_axis(normal);
   const Vector3<T> x = projected / length;
   return {x, normal.cross(x), normal};
+}
+
+/// The rotation by the smallest angle that takes the unit vector `from` to the unit vector `to`,
+/// orthonormal to a few epsilons for any two: the identity for equal ones, and for opposite ones
+/// the half turn about the y axis of frame_from_axis(from).
+///
+/// The product of two reflections, in the planes of `from` and of the bisector. The sum of nearly
+/// opposite vectors is exact but knows `from` only as well as the two are unit, so its part along
+/// `from` is taken from its length instead.
+template <class T>
+Eigen::Matrix<T, 3, 3> minimal_rotation(const Vector3<T>& from, const Vector3<T>& to) {
+  using Matrix = Eigen::Matrix<T, 3, 3>;
+  const Vector3<T> sum = from + to;
+  const T along = sum.squaredNorm() / 2;
+  const Vector3<T> across = sum - from * from.dot(sum);
+  Vector3<T> bisector = across + from * along;
+  const bool opposite = along < 1 && across.norm() < 8 * std::numeric_limits<T>::epsilon();
+  bisector = opposite ? frame_from_axis(from).x : Vector3<T>(bisector.normalized());
+  return (Matrix::Identity() - 2 * bisector * bisector.transpose()) *
+         (Matrix::Identity() - 2 * from * from.transpose());
 }
 
 }  // namespace burnish

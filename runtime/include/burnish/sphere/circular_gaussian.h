@@ -1,0 +1,237 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "burnish/sphere/frame.h"
+#include "burnish/sphere/special_functions.h"
+#include "burnish/sphere/spherical_gaussian.h"
+
+/// Based on: circular Gaussians (iwasaki2014cloth), the lobes of a fibre: one in the azimuth around
+/// it, and a plain Gaussian in the longitudinal angle. Sharpness means the same in both and in a
+/// spherical Gaussian: a variance of 1/sharpness, for narrow lobes.
+namespace burnish {
+
+/// amplitude * exp(sharpness * (cos(phi - center) - 1)), of period 2 pi.
+template <class T>
+struct CircularGaussian {
+  T center = 0;     ///< radians
+  T sharpness = 1;  ///< >= 0
+  T amplitude = 1;
+};
+
+/// amplitude * exp(-sharpness / 2 * (theta - center)^2).
+template <class T>
+struct LongitudinalGaussian {
+  T center = 0;     ///< radians
+  T sharpness = 1;  ///< >= 0, 1 / sigma^2
+  T amplitude = 1;
+};
+
+template <class T>
+T eval(const CircularGaussian<T>& lobe, T phi) {
+  const T s = std::sin((phi - lobe.center) / 2);
+  return lobe.amplitude * std::exp(-lobe.sharpness * (2 * s * s));
+}
+
+template <class T>
+T eval(const LongitudinalGaussian<T>& lobe, T theta) {
+  const T d = theta - lobe.center;
+  return lobe.amplitude * std::exp(-lobe.sharpness * (d * d / 2));
+}
+
+/// Integral over the circle, 2 pi exp(-k) I0(k), to 4 (float) or 6 (double) epsilons.
+template <class T>
+T integral(const CircularGaussian<T>& lobe) {
+  return lobe.amplitude * (2 * kPi<T> * scaled_bessel_i0(lobe.sharpness));
+}
+
+namespace internal {
+
+/// The product of two lobes but for the amplitudes, as sg_product in the plane: with L the larger
+/// sharpness and r the ratio, the unit vectors' sum 1 + r exp(2 i h) for centers 2 h apart.
+template <class T>
+struct CircularProduct {
+  T center, sharpness, exponent;
+};
+
+template <class T>
+CircularProduct<T> circular_product(const CircularGaussian<T>& a, const CircularGaussian<T>& b) {
+  const bool a_larger = a.sharpness >= b.sharpness;
+  const CircularGaussian<T>&narrow = a_larger ? a : b, &wide = a_larger ? b : a;
+  const T ratio = narrow.sharpness > 0 ? wide.sharpness / narrow.sharpness : T(0);
+  const T half = (wide.center - narrow.center) / 2;
+  const T c = std::cos(half), s = std::sin(half);
+  const T x = (1 - ratio) + 2 * ratio * c * c, y = 2 * ratio * s * c;
+  const T length = std::hypot(x, y);
+  return {narrow.center + std::atan2(y, x),
+          std::min(narrow.sharpness * length, std::numeric_limits<T>::max()),
+          -(wide.sharpness / (length + 1 + ratio)) * (4 * s * s)};
+}
+
+}  // namespace internal
+
+/// Product of two lobes: exact, again a lobe. Opposite centers of equal sharpness give sharpness 0
+/// (to rounding of pi) about the first.
+template <class T>
+CircularGaussian<T> product(const CircularGaussian<T>& a, const CircularGaussian<T>& b) {
+  const internal::CircularProduct<T> p = internal::circular_product(a, b);
+  return {p.center, p.sharpness,
+          internal::scaled_product(a.amplitude, b.amplitude, std::exp(p.exponent))};
+}
+
+/// Integral of the product over the circle, exact.
+template <class T>
+T inner_product(const CircularGaussian<T>& a, const CircularGaussian<T>& b) {
+  const internal::CircularProduct<T> p = internal::circular_product(a, b);
+  return internal::scaled_product(
+      a.amplitude, b.amplitude, 2 * kPi<T> * scaled_bessel_i0(p.sharpness) * std::exp(p.exponent));
+}
+
+/// Product of two Gaussians on the line: exact, again one.
+template <class T>
+LongitudinalGaussian<T> product(const LongitudinalGaussian<T>& a,
+                                const LongitudinalGaussian<T>& b) {
+  const bool a_larger = a.sharpness >= b.sharpness;
+  const LongitudinalGaussian<T>&narrow = a_larger ? a : b, &wide = a_larger ? b : a;
+  const T ratio = narrow.sharpness > 0 ? wide.sharpness / narrow.sharpness : T(0);
+  const T d = wide.center - narrow.center, share = ratio / (1 + ratio);
+  return {narrow.center + share * d,
+          std::min(narrow.sharpness * (1 + ratio), std::numeric_limits<T>::max()),
+          internal::scaled_product(a.amplitude, b.amplitude,
+                                   std::exp(-(wide.sharpness / (1 + ratio)) * (d * d / 2)))};
+}
+
+namespace internal {
+
+/// erf(b) - erf(a) for a <= b, without cancellation in the tails, where both are +-1.
+template <class T>
+T erf_difference(T a, T b) {
+  if (a > T(0.5)) return std::erfc(a) - std::erfc(b);
+  if (b < T(-0.5)) return std::erfc(-b) - std::erfc(-a);
+  return std::erf(b) - std::erf(a);
+}
+
+/// A Gaussian's integrand counts down to exp(-kDecay) of its largest value.
+template <class T>
+inline constexpr T kDecay = std::numeric_limits<T>::digits > 24 ? T(37) : T(17);
+
+/// Integral of f over [from, to] by Gauss-Legendre with 7 nodes on each panel: relative error 1e-7
+/// (float) and 3e-12 (double) for a Gaussian cut off by kDecay, times something smooth.
+template <class T, class F>
+T integrate_smooth(T from, T to, const F& f) {
+  constexpr T kNode[] = {T(0.9491079123427585), T(0.7415311855993945), T(0.4058451513773972)};
+  constexpr T kWeight[] = {T(0.1294849661688697), T(0.2797053914892766), T(0.3818300505051189)};
+  constexpr T kMiddleWeight = T(0.4179591836734694);
+  constexpr int kPanels = std::numeric_limits<T>::digits > 24 ? 14 : 6;
+  if (!(from < to)) return 0;
+  const T half = (to - from) / (2 * kPanels);
+  T sum = 0;
+  for (int panel = 0; panel < kPanels; ++panel) {
+    const T middle = from + half * T(2 * panel + 1);
+    sum += kMiddleWeight * f(middle);
+    for (int i = 0; i < 3; ++i)
+      sum += kWeight[i] * (f(middle - half * kNode[i]) + f(middle + half * kNode[i]));
+  }
+  return half * sum;
+}
+
+/// Least distance of [from, to] from 0.
+template <class T>
+T distance_from_zero(T from, T to) {
+  return std::max({from, -to, T(0)});
+}
+
+/// Calls visit(from, to) with the parts of an arc, relative to a lobe's center, that lie in each
+/// of the lobe's periods.
+template <class T, class Visit>
+void for_each_period(T center, T from, T to, const Visit& visit) {
+  constexpr T pi = kPi<T>;
+  const T shift = 2 * pi * std::round(((to - from) / 2 + (from - center)) / (2 * pi));
+  const T a = from - center - shift, b = to - center - shift;
+  for (const T period : {-2 * pi, T(0), 2 * pi}) {
+    const T low = std::max(a - period, -pi), high = std::min(b - period, pi);
+    if (low < high) visit(low, high);
+  }
+}
+
+}  // namespace internal
+
+/// Integral over the arc from <= phi <= to, at most 2 pi long, anywhere on the circle. Relative
+/// error 1e-6 (float), 3e-12 (double), also in the tails.
+template <class T>
+T integral_over_arc(const CircularGaussian<T>& lobe, T from, T to) {
+  T sum = 0;
+  internal::for_each_period(lobe.center, from, to, [&](T low, T high) {
+    const T s = std::sin(internal::distance_from_zero(low, high) / 2);
+    const T end = s * s + internal::kDecay<T> / 2 / lobe.sharpness;
+    const T reach = end < 1 ? 2 * std::asin(std::sqrt(end)) : kPi<T>;
+    sum += internal::integrate_smooth(std::max(low, -reach), std::min(high, reach), [&](T x) {
+      const T sine = std::sin(x / 2);
+      return std::exp(-lobe.sharpness * (2 * sine * sine));
+    });
+  });
+  return lobe.amplitude * sum;
+}
+
+/// As integral_over_arc, by erf. Error relative to the whole circle: 1.3e-3 at sharpness 5, 2.7e-4
+/// at 10, 1e-5 at 50, falling with its square; not for less than 5 (3.8 % at 1). Plain
+/// erf(sqrt(k / 2) x), the usual form, errs by 1.4 %, .66 %, .13 %.
+///
+/// With s = sqrt(2 k) sin(x / 2) the integrand is exp(-s^2) / sqrt(1 - s^2 / (2 k)), of which the
+/// root's series is kept to its second term.
+template <class T>
+T integral_over_arc_fast(const CircularGaussian<T>& lobe, T from, T to) {
+  const T root = std::sqrt(lobe.sharpness) * T(std::sqrt(2.0));
+  T sum = 0;
+  internal::for_each_period(lobe.center, from, to, [&](T low, T high) {
+    const T a = root * std::sin(low / 2), b = root * std::sin(high / 2);
+    const T correction = 1 / (8 * lobe.sharpness);
+    sum += (1 + correction) * (std::sqrt(kPi<T>) / 2) * internal::erf_difference(a, b) +
+           correction * (a * std::exp(-a * a) - b * std::exp(-b * b));
+  });
+  return lobe.amplitude * std::max(sum * 2 / root, T(0));
+}
+
+/// Integral over from <= theta <= to, exact, also in the tails.
+template <class T>
+T integral(const LongitudinalGaussian<T>& lobe, T from, T to) {
+  const T root = std::sqrt(lobe.sharpness / 2);
+  if (!(root * std::max(std::abs(from - lobe.center), std::abs(to - lobe.center)) >
+        std::numeric_limits<T>::epsilon()))
+    return lobe.amplitude * (to - from);
+  return lobe.amplitude * (std::sqrt(kPi<T>) / 2) / root *
+         internal::erf_difference(root * (from - lobe.center), root * (to - lobe.center));
+}
+
+/// Integral of lobe(theta) cos(theta) over [from, to] within [-pi/2, pi/2]: a function of the
+/// latitude over the sphere. Relative error 1e-6 (float), 3e-12 (double).
+template <class T>
+T integral_times_cosine(const LongitudinalGaussian<T>& lobe, T from, T to) {
+  const T nearest = internal::distance_from_zero(from - lobe.center, to - lobe.center);
+  const T reach = std::sqrt(nearest * nearest + 2 * internal::kDecay<T> / lobe.sharpness);
+  return internal::integrate_smooth(
+      std::max(from, lobe.center - reach), std::min(to, lobe.center + reach),
+      [&](T theta) { return eval(lobe, theta) * std::max(std::cos(theta), T(0)); });
+}
+
+/// A spherical Gaussian at latitude theta (from the xy plane of `frame` toward z) and azimuth phi
+/// is exactly longitudinal(theta) * azimuthal(phi) with these two: the exponent is
+/// L (cos(theta - theta_p) - 1) + L cos(theta) cos(theta_p) (cos(phi - phi_p) - 1).
+/// @{
+template <class T>
+CircularGaussian<T> longitudinal_factor(const SphericalGaussian<T>& lobe, const Frame<T>& frame) {
+  const Vector3<T> p = frame.to_local(lobe.axis);
+  return {std::atan2(p.z(), std::hypot(p.x(), p.y())), lobe.sharpness, lobe.amplitude};
+}
+template <class T>
+CircularGaussian<T> azimuthal_factor(const SphericalGaussian<T>& lobe, const Frame<T>& frame,
+                                     T theta) {
+  const Vector3<T> p = frame.to_local(lobe.axis);
+  return {std::atan2(p.y(), p.x()),
+          lobe.sharpness * std::max(std::cos(theta), T(0)) * std::hypot(p.x(), p.y()), T(1)};
+}
+/// @}
+
+}  // namespace burnish
