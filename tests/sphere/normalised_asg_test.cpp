@@ -118,10 +118,10 @@ TYPED_TEST(Nasg, SamplesHaveTheDensity) {
     const test::SphereCells cells(lobe.frame, finest, std::sqrt(1 + anisotropy));
     const test::ChiSquare chi = test::chi_square_on_sphere(
         cells,
-        [&](double u, double v) {
+        [&](double u, double v) -> Vector3d {
           const Vector3<T> d = sample(lobe_t, T(u), T(v));
           EXPECT_NEAR(d.norm(), 1, 8 * std::numeric_limits<T>::epsilon());
-          return d.template cast<double>().eval();
+          return d.template cast<double>();
         },
         [&](const Vector3d& d) { return pdf(lobe, d); }, kSamples, seed);
     EXPECT_GT(chi.p_value, test::sidak_level(0.01, int(shapes.size())))
