@@ -54,8 +54,8 @@ T eval(const NormalisedAsg<T>& lobe, const Vector3<T>& direction) {
 /// anisotropy)).
 template <class T>
 T integral(const NormalisedAsg<T>& lobe) {
-  return lobe.amplitude *
-         (2 * kPi<T> * internal::sg_mass(lobe.sharpness) / std::sqrt(1 + lobe.anisotropy));
+  return lobe.amplitude * (2 * kPi<T> * internal::sg_mass(lobe.sharpness)) /
+         std::sqrt(1 + lobe.anisotropy);
 }
 
 template <class T>
