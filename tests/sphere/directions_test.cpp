@@ -55,6 +55,46 @@ TYPED_TEST(Directions, FrameFromBadTangentFallsBack) {
   }
 }
 
+template <class T>
+void expect_minimal_rotation(const Vector3<T>& from, const Vector3<T>& to) {
+  // Two reflections, each of a few roundings.
+  const double tolerance = 16 * std::numeric_limits<T>::epsilon();
+  const Eigen::Matrix<T, 3, 3> r = minimal_rotation(from, to);
+  EXPECT_LT((r * from - to).norm(), tolerance) << from.transpose() << " to " << to.transpose();
+  EXPECT_LT((r * r.transpose() - Eigen::Matrix<T, 3, 3>::Identity()).norm(), tolerance);
+  EXPECT_NEAR(r.determinant(), 1, tolerance);
+  // By the angle between the two, not more: the trace of a rotation is 1 + 2 cos(angle).
+  EXPECT_NEAR(r.trace(), 1 + 2 * from.dot(to), tolerance);
+}
+
+TYPED_TEST(Directions, MinimalRotationIsOneForAnyTwoDirections) {
+  using T = TypeParam;
+  std::mt19937 random(kSeed);
+  for (int i = 0; i < 1000; ++i) {
+    SCOPED_TRACE(kSeed);
+    const Vector3d from = test::random_direction(random), to = test::random_direction(random);
+    expect_minimal_rotation<T>(from.cast<T>(), to.cast<T>());
+  }
+  for (const double angle : {0.0, 1e-30, 1e-15, 1e-8, 1e-7, 1e-6, 1e-4, 1e-2})
+    for (int i = 0; i < 50; ++i) {
+      const Vector3d from = test::random_direction(random);
+      const Vector3d aside = test::random_frame(from, random).x;
+      const Vector3d near = std::cos(angle) * from + std::sin(angle) * aside;
+      expect_minimal_rotation<T>(from.cast<T>(), near.cast<T>());
+      expect_minimal_rotation<T>(from.cast<T>(), Vector3<T>(-near.cast<T>()));
+    }
+}
+
+TYPED_TEST(Directions, MinimalRotationOfOppositeDirectionsIsAHalfTurnAboutTheFramesY) {
+  using T = TypeParam;
+  const Vector3<T> from(T(0.6), 0, T(0.8));
+  const Vector3<T> y = frame_from_axis(from).y;
+  EXPECT_LT((minimal_rotation(from, Vector3<T>(-from)) * y - y).norm(),
+            8 * std::numeric_limits<T>::epsilon());
+  EXPECT_EQ((minimal_rotation<T>(Vector3<T>::UnitZ(), Vector3<T>::UnitZ())),
+            (Eigen::Matrix<T, 3, 3>::Identity()));
+}
+
 TYPED_TEST(Directions, OctahedralMapRoundTrips) {
   using T = TypeParam;
   std::mt19937 random(kSeed);

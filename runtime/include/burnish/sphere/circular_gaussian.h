@@ -175,21 +175,26 @@ T integral_over_arc(const CircularGaussian<T>& lobe, T from, T to) {
   return lobe.amplitude * sum;
 }
 
-/// As integral_over_arc, by erf. Error relative to the whole circle: 1.3e-3 at sharpness 5, 2.7e-4
-/// at 10, 1e-5 at 50, falling with its square; not for less than 5 (3.8 % at 1). Plain
-/// erf(sqrt(k / 2) x), the usual form, errs by 1.4 %, .66 %, .13 %.
+/// As integral_over_arc, by erf from sharpness 5: error relative to the whole circle 9.3e-4 at
+/// 5, 8.7e-5 at 10, 1e-5 at 20, falling with its cube, where the usual sqrt(pi / (2 k))
+/// erf(sqrt(k / 2) x) errs by 2.8, 1.3, .64 %. Below 5, integral_over_arc itself.
 ///
 /// With s = sqrt(2 k) sin(x / 2) the integrand is exp(-s^2) / sqrt(1 - s^2 / (2 k)), of which the
-/// root's series is kept to its second term.
+/// root's series is kept to its third term.
 template <class T>
 T integral_over_arc_fast(const CircularGaussian<T>& lobe, T from, T to) {
-  const T root = std::sqrt(lobe.sharpness) * T(std::sqrt(2.0));
+  if (!(lobe.sharpness >= 5)) return integral_over_arc(lobe, from, to);
+  const T root = std::sqrt(lobe.sharpness) * T(std::sqrt(2.0)), inverse = 1 / (8 * lobe.sharpness);
+  const auto rest = [&](T s, T sine) {
+    return s * std::exp(-s * s) * inverse * (1 + T(4.5) * inverse + T(0.75) * sine * sine);
+  };
   T sum = 0;
   internal::for_each_period(lobe.center, from, to, [&](T low, T high) {
-    const T a = root * std::sin(low / 2), b = root * std::sin(high / 2);
-    const T correction = 1 / (8 * lobe.sharpness);
-    sum += (1 + correction) * (std::sqrt(kPi<T>) / 2) * internal::erf_difference(a, b) +
-           correction * (a * std::exp(-a * a) - b * std::exp(-b * b));
+    const T sine_a = std::sin(low / 2), sine_b = std::sin(high / 2);
+    const T a = root * sine_a, b = root * sine_b;
+    sum += (1 + inverse * (1 + T(4.5) * inverse)) * (std::sqrt(kPi<T>) / 2) *
+               internal::erf_difference(a, b) +
+           rest(a, sine_a) - rest(b, sine_b);
   });
   return lobe.amplitude * std::max(sum * 2 / root, T(0));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -30,9 +31,10 @@ T triangle_solid_angle(Vector3<T> a, Vector3<T> b, Vector3<T> c) {
 /// 0 at a pole. Exact; a whole map sums to 4 pi.
 template <class T>
 T latlong_pixel_solid_angle(int row, int width, int height) {
-  // cos(t) - cos(t + s) without its cancellation at the poles
+  // cos(t) - cos(t + s) without its cancellation, from the nearer pole
   const T half_step = kPi<T> / (2 * T(height));
-  return 4 * kPi<T> / T(width) * std::sin(half_step * T(2 * row + 1)) * std::sin(half_step);
+  const int from_pole = std::min(row, height - 1 - row);
+  return 4 * kPi<T> / T(width) * std::sin(half_step * T(2 * from_pole + 1)) * std::sin(half_step);
 }
 
 /// Solid angle of every texel of an octahedral map, in sr: the map is equal-area.
