@@ -135,7 +135,7 @@ TEST(SolidAngle, OfAnOctahedralTexelIsThatOfItsCorners) {
   // A texel's edges are not great circles; two triangles differ from it by the square of its size.
   constexpr int kResolution = 256;
   for (const auto& [x, y] : {std::pair{130, 150}, {10, 40}, {200, 131}, {255, 3}}) {
-    const auto corner = [&](int i, int j) {
+    const auto corner = [x = x, y = y](int i, int j) {
       return octahedral_to_direction(double(x + i) / kResolution, double(y + j) / kResolution);
     };
     const double area = triangle_solid_angle(corner(0, 0), corner(1, 0), corner(1, 1)) +
