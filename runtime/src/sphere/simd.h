@@ -1,0 +1,5 @@
+#pragma once
+
+// To be included before any header of Highway. Sizeless vectors (SVE, RISC-V) cannot be members of
+// a struct, which the vector forms here rely on; those machines run the NEON or scalar target.
+#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)

@@ -1,0 +1,148 @@
+// Elementary functions on vectors of float, without branches. Errors are relative and were measured
+// over every target; tests/sphere/batch_test.cpp asserts them. A NaN gives some number or NaN.
+
+#if defined(BURNISH_SPHERE_VECTOR_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef BURNISH_SPHERE_VECTOR_MATH_INL_H_
+#undef BURNISH_SPHERE_VECTOR_MATH_INL_H_
+#else
+#define BURNISH_SPHERE_VECTOR_MATH_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace burnish {
+namespace HWY_NAMESPACE {
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// c0 + c1 x + c2 x^2 + ...
+template <class D, class V>
+HWY_INLINE V polynomial(D d, V, float last) {
+  return hn::Set(d, last);
+}
+template <class D, class V, class... More>
+HWY_INLINE V polynomial(D d, V x, float first, More... more) {
+  return hn::MulAdd(polynomial(d, x, more...), x, hn::Set(d, first));
+}
+
+/// exp(x) = scale (1 + rest): scale is a power of 2, and |rest| < 0.42.
+template <class V>
+struct ExpParts {
+  V scale, rest;
+};
+
+/// Of exp(x + correction) for x in [-87.3, 88], |correction| < 0.1.
+template <class D, class V>
+HWY_INLINE ExpParts<V> exp_parts(D d, V x, V correction) {
+  const hn::RebindToSigned<D> di;
+  const auto exponent = hn::NearestInt(hn::Mul(x, hn::Set(d, 1.44269504f)));
+  const V q = hn::ConvertTo(d, exponent);
+  // ln 2 in two parts, of which the first has so few digits that q times it is exact.
+  V r = hn::NegMulAdd(q, hn::Set(d, 0.693359375f), x);
+  r = hn::Add(hn::NegMulAdd(q, hn::Set(d, -2.12194440e-4f), r), correction);
+  const V curve = polynomial(d, r, 0.499999934f, 0.166665206f, 0.0416683879f, 0.00836871541f,
+                             0.00138145999f);  // minimax, 3e-9
+  const V scale = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(exponent, hn::Set(di, 127))));
+  return {scale, hn::MulAdd(hn::Mul(r, r), curve, r)};
+}
+
+/// exp(x) for x <= 88: 1 ulp; 0 for x < -85, where the result would be below 1.3e-37. (Its factors
+/// stay clear of denormal numbers, which cost a hundred cycles each.)
+template <class D, class V>
+HWY_INLINE V exp(D d, V x) {
+  const V floor = hn::Set(d, -85.0f);
+  const ExpParts<V> e = exp_parts(d, hn::Max(x, floor), hn::Zero(d));
+  return hn::IfThenElseZero(hn::Ge(x, floor), hn::MulAdd(e.scale, e.rest, e.scale));
+}
+
+/// 1 - exp(-x) for x >= 0: 3 ulp, as small as x may be.
+template <class D, class V>
+HWY_INLINE V one_minus_exp(D d, V x) {
+  // From 18 on the result is 1.
+  const ExpParts<V> e = exp_parts(d, hn::Neg(hn::Min(x, hn::Set(d, 18.0f))), hn::Zero(d));
+  return hn::NegMulAdd(e.scale, e.rest, hn::Sub(hn::Set(d, 1.0f), e.scale));
+}
+
+/// (1 - exp(-x)) / x for x >= 0; 1 at 0.
+template <class D, class V>
+HWY_INLINE V one_minus_exp_over(D d, V x) {
+  const V one = hn::Set(d, 1.0f);
+  return hn::IfThenElse(hn::Gt(x, hn::Zero(d)), hn::Div(one_minus_exp(d, x), x), one);
+}
+
+/// exp(-x^2) for 0 <= x <= 9.3. The square's rounding error, which the exponential would magnify by
+/// x^2, is kept, with or without fused multiply-add.
+template <class D, class V>
+HWY_INLINE V exp_minus_square(D d, V x) {
+  const hn::RebindToUnsigned<D> du;
+  const V head = hn::BitCast(d, hn::And(hn::BitCast(du, x), hn::Set(du, 0xFFFFF000u)));
+  const V rest = hn::Mul(hn::Sub(head, x), hn::Add(head, x));  // at most 2^-11 x^2
+  const ExpParts<V> e = exp_parts(d, hn::Neg(hn::Mul(head, head)), rest);
+  return hn::MulAdd(e.scale, e.rest, e.scale);
+}
+
+/// erf(x) for |x| <= 1: 2 ulp.
+template <class D, class V>
+HWY_INLINE V erf_of_small(D d, V x) {
+  return hn::Mul(x, polynomial(d, hn::Mul(x, x), 1.12837912f, -0.376123265f, 0.112801820f,
+                               -0.0267113549f, 0.00491759456f, -5.63157761e-4f));
+}
+
+/// erfc(x) exp(x^2) / t as a function of t = 1 / (1 + 0.4 x), x >= 0: minimax, 1.3e-7.
+template <class D, class V>
+HWY_INLINE V erfc_curve(D d, V t) {
+  return polynomial(d, t, 0.225675863f, 0.225669520f, 0.207843929f, 0.168533419f, 0.141462614f,
+                    -0.00567126998f, 0.169158942f, -0.182946104f, 0.0502732114f);
+}
+
+inline constexpr float kErfcIsZeroFrom = 9.0f;  // below 5e-37 from there on
+
+/// erfc(x) for x >= 0: 5e-7, also in the tail; 0 from kErfcIsZeroFrom on.
+template <class D, class V>
+HWY_INLINE V erfc(D d, V x) {
+  const V limit = hn::Set(d, kErfcIsZeroFrom), one = hn::Set(d, 1.0f);
+  const V y = hn::Min(x, limit);
+  const V t = hn::Div(one, hn::MulAdd(hn::Set(d, 0.4f), y, one));
+  const V value = hn::Mul(exp_minus_square(d, y), hn::Mul(t, erfc_curve(d, t)));
+  return hn::IfThenElseZero(hn::Lt(x, limit), value);
+}
+
+/// (erf(far) - erf(x)) / (2 erf(far)) for 0 <= x <= far: the tail beyond x of a Gaussian that is
+/// cut off at +-far. Relative error 1e-6 but next to far, where it is 1e-7 absolute.
+template <class D, class V>
+HWY_INLINE V gaussian_tail(D d, V x, V far) {
+  const V one = hn::Set(d, 1.0f), limit = hn::Set(d, kErfcIsZeroFrom);
+  // erfc of both, with one division.
+  const V near_x = hn::Min(x, limit), near_far = hn::Min(far, limit);
+  const V p = hn::Set(d, 0.4f);
+  const V below_x = hn::MulAdd(p, near_x, one), below_far = hn::MulAdd(p, near_far, one);
+  const V inverse = hn::Div(one, hn::Mul(below_x, below_far));
+  const V t_x = hn::Mul(inverse, below_far), t_far = hn::Mul(inverse, below_x);
+  const V erfc_x = hn::IfThenElseZero(
+      hn::Lt(x, limit), hn::Mul(exp_minus_square(d, near_x), hn::Mul(t_x, erfc_curve(d, t_x))));
+  const V erfc_far = hn::IfThenElseZero(
+      hn::Lt(far, limit),
+      hn::Mul(exp_minus_square(d, near_far), hn::Mul(t_far, erfc_curve(d, t_far))));
+  // A difference of erfs for a wide Gaussian, of erfcs for a narrow one, so that neither cancels.
+  const auto is_small = hn::Lt(far, one);
+  const V small_far = erf_of_small(d, hn::Min(far, one));
+  const V numerator = hn::IfThenElse(is_small, hn::Sub(small_far, erf_of_small(d, hn::Min(x, one))),
+                                     hn::Sub(erfc_x, erfc_far));
+  const V whole = hn::IfThenElse(is_small, small_far, hn::Sub(one, erfc_far));
+  return hn::Max(hn::Div(numerator, hn::Add(whole, whole)), hn::Zero(d));
+}
+
+/// sin(x) for |x| <= pi / 2: 2 ulp.
+template <class D, class V>
+HWY_INLINE V sine(D d, V x) {
+  const V square = hn::Mul(x, x);
+  const V curve = polynomial(d, square, -0.166666666f, 0.00833333111f, -1.98408682e-4f,
+                             2.75253846e-6f, -2.38889115e-8f);
+  return hn::MulAdd(hn::Mul(x, square), curve, x);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace burnish
+HWY_AFTER_NAMESPACE();
+
+#endif

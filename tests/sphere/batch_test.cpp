@@ -1,0 +1,312 @@
+#include "burnish/sphere/batch.h"
+
+#include <functional>
+#include <limits>
+#include <random>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "support/quadrature.h"
+
+// Every test runs on each instruction set that this processor has.
+
+namespace burnish {
+namespace {
+
+constexpr unsigned kSeed = 20;
+constexpr float kMax = std::numeric_limits<float>::max();
+constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
+const std::vector<float> kExtremes = {0, kDenormal, 1e-8f, 1e-3f, 1, 1e3f, 1e8f, kMax};
+
+/// Restores the best instruction set whatever happens.
+class Batch : public testing::TestWithParam<std::string> {
+ protected:
+  void SetUp() override { ASSERT_TRUE(batch::use_instruction_set(GetParam())); }
+  void TearDown() override { batch::use_instruction_set(""); }
+};
+
+std::vector<std::string> sets() {
+  const auto views = batch::instruction_sets();
+  return {views.begin(), views.end()};
+}
+INSTANTIATE_TEST_SUITE_P(On, Batch, testing::ValuesIn(sets()),
+                         [](const auto& info) { return info.param; });
+
+/// Numbers of every magnitude, and the extremes.
+std::vector<float> magnitudes(int count, std::mt19937& random) {
+  std::uniform_real_distribution<float> exponent(-10, 10);
+  std::vector<float> values = kExtremes;
+  for (int i = 0; i < count; ++i) values.push_back(std::pow(10.0f, exponent(random)));
+  return values;
+}
+
+struct DirectionArrays {
+  std::vector<float> x, y, z;
+  batch::Directions spans() const { return {x, y, z}; }
+  Vector3f at(size_t i) const { return {x[i], y[i], z[i]}; }
+  void add(const Vector3d& v) {
+    x.push_back(float(v.x()));
+    y.push_back(float(v.y()));
+    z.push_back(float(v.z()));
+  }
+};
+
+/// Directions all over the sphere, and close to an axis and to its opposite.
+DirectionArrays directions_around(const Vector3d& axis, int count, std::mt19937& random) {
+  DirectionArrays directions;
+  for (int i = 0; i < count; ++i) directions.add(test::random_direction(random));
+  for (const double sign : {1.0, -1.0}) {
+    directions.add(sign * axis);
+    for (double distance = 1e-7; distance < 1; distance *= 3)
+      directions.add((sign * axis + distance * test::random_direction(random)).normalized());
+  }
+  return directions;
+}
+
+TEST_P(Batch, ExpMatchesTheStandardLibrary) {
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<float> uniform(-84.9f, 88);
+  std::vector<float> x = {0, -0.0f, kDenormal, -kDenormal, 1e-8f, -1e-8f, 88, -84.9f};
+  for (int i = 0; i < 20000; ++i) x.push_back(uniform(random));
+  std::vector<float> results(x.size());
+  batch::exp(x, results);
+  double worst = 0;
+  for (size_t i = 0; i < x.size(); ++i)
+    worst = std::max(worst, std::abs(results[i] / std::exp(double(x[i])) - 1));
+  // A last place is 2^-23 = 1.2e-7; the polynomial, the reduced argument and the result each round.
+  EXPECT_LT(worst, 2e-7);
+  const std::vector<float> far = {-85.1f, -1e4f, -kMax, -std::numeric_limits<float>::infinity()};
+  std::vector<float> zeros(far.size(), 1);
+  batch::exp(far, zeros);
+  for (const float value : zeros) EXPECT_EQ(value, 0);
+}
+
+TEST_P(Batch, SphericalGaussianMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  for (const float sharpness : magnitudes(20, random)) {
+    const Vector3d axis = test::random_direction(random);
+    const SphericalGaussian<float> lobe = {axis.cast<float>(), sharpness, 3};
+    const DirectionArrays directions = directions_around(axis, 50, random);
+    std::vector<float> results(directions.x.size());
+    batch::eval(lobe, directions.spans(), results);
+    for (size_t i = 0; i < results.size(); ++i) {
+      const Vector3d v = directions.at(i).cast<double>(), p = lobe.axis.cast<double>();
+      const double exponent = double(sharpness) / 2 * (v - p).squaredNorm();
+      // Three roundings in the square of each difference, and those of exp; 0 below its range.
+      const double bound = 3 * std::exp(-exponent) * (3e-7 + 4e-7 * exponent) + 3 * 1.4e-37;
+      ASSERT_NEAR(results[i], 3 * std::exp(-exponent), bound) << sharpness << ", seed " << kSeed;
+    }
+  }
+}
+
+/// The value in double of a float lobe, and the error of a float evaluation: each dot product
+/// errs by three roundings of terms of at most 1.
+std::pair<double, double> asg_and_bound(const AnisotropicGaussian<float>& lobe, const Vector3f& v) {
+  const Vector3d local = lobe.frame.cast<double>().to_local(v.cast<double>());
+  const double bx = lobe.bandwidth_x, by = lobe.bandwidth_y, kDot = 3 * 6e-8 * 1.5;
+  const double ex = bx * local.x() * local.x(), ey = by * local.y() * local.y();
+  const double slack = 2 * kDot * (std::sqrt(ex * bx) + std::sqrt(ey * by)) +
+                       kDot * kDot * (bx + by) + 4e-7 * (ex + ey);
+  const double low = std::exp(-std::min(ex + ey + slack, 700.0)),
+               high = std::exp(-std::max(ex + ey - slack, 0.0));
+  const double z = std::max(local.z(), 0.0), value = z * std::exp(-(ex + ey));
+  const double bound = std::max((z + kDot) * high - value, value - (z - kDot) * low);
+  return {lobe.amplitude * value, std::abs(lobe.amplitude) * (bound + 3e-7 * value + 1.4e-37)};
+}
+
+TEST_P(Batch, AnisotropicGaussianMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  for (const float bandwidth_x : magnitudes(10, random)) {
+    for (const float bandwidth_y : kExtremes) {
+      const Vector3d axis = test::random_direction(random);
+      const AnisotropicGaussian<float> lobe = {test::random_frame(axis, random).cast<float>(),
+                                               bandwidth_x, bandwidth_y, -2};
+      const DirectionArrays directions = directions_around(axis, 20, random);
+      std::vector<float> results(directions.x.size());
+      batch::eval(lobe, directions.spans(), results);
+      for (size_t i = 0; i < results.size(); ++i) {
+        const auto [value, bound] = asg_and_bound(lobe, directions.at(i));
+        ASSERT_NEAR(results[i], value, bound)
+            << bandwidth_x << " " << bandwidth_y << ", seed " << kSeed;
+      }
+    }
+  }
+}
+
+TEST_P(Batch, ManyLobesAreTheSameAsOneByOne) {
+  std::mt19937 random(kSeed);
+  DirectionArrays directions;
+  for (int i = 0; i < 1500; ++i) directions.add(test::random_direction(random));
+  const size_t size = directions.x.size();
+  std::vector<AnisotropicGaussian<float>> asgs(3);
+  std::vector<SphericalGaussian<float>> sgs(3);
+  for (size_t l = 0; l < 3; ++l) {
+    const Vector3d axis = test::random_direction(random);
+    asgs[l] = {test::random_frame(axis, random).cast<float>(), 20, float(l), 1};
+    sgs[l] = {axis.cast<float>(), float(l), 1};
+  }
+  std::vector<float> all(3 * size), one(size);
+  batch::eval(asgs, directions.spans(), all);
+  for (size_t l = 0; l < 3; ++l) {
+    batch::eval(asgs[l], directions.spans(), one);
+    EXPECT_TRUE(std::equal(one.begin(), one.end(), all.begin() + l * size));
+  }
+  batch::eval(sgs, directions.spans(), all);
+  for (size_t l = 0; l < 3; ++l) {
+    batch::eval(sgs[l], directions.spans(), one);
+    EXPECT_TRUE(std::equal(one.begin(), one.end(), all.begin() + l * size));
+  }
+}
+
+TEST_P(Batch, AsgIntegralMatchesTheExactFormInDouble) {
+  std::mt19937 random(kSeed);
+  std::vector<float> bx, by;
+  for (const float x : magnitudes(40, random)) {
+    for (const float y : magnitudes(10, random)) {
+      bx.push_back(x);
+      by.push_back(y);
+    }
+    for (const float ratio : {1.0f, 1 + 1e-7f, 10.0f, 1e6f}) {
+      bx.push_back(x);
+      by.push_back(x / ratio);
+    }
+  }
+  std::vector<float> exact(bx.size()), fast(bx.size());
+  batch::asg_integral(bx, by, AsgIntegral::exact, exact);
+  batch::asg_integral(bx, by, AsgIntegral::fast, fast);
+  for (size_t i = 0; i < bx.size(); ++i) {
+    const double truth = asg_integral_exact(double(bx[i]), double(by[i]));
+    // 7 midpoints err by 2e-7; a dozen roundings of positive terms.
+    ASSERT_NEAR(exact[i] / truth, 1, 1e-6) << bx[i] << " " << by[i] << ", seed " << kSeed;
+    const double quick = asg_integral_fast(double(bx[i]), double(by[i]));
+    ASSERT_NEAR(fast[i] / quick, 1, 4e-7) << bx[i] << " " << by[i];
+  }
+}
+
+/// Runs a visibility fraction over widths and distances; compares with the scalar form in double.
+void expect_fractions(const std::function<void(std::span<const float>, std::span<const float>,
+                                               std::span<float>)>& subject,
+                      const std::function<double(double, double)>& scalar) {
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<float> uniform(-1.6f, 1.6f);
+  std::vector<float> widths, distances;
+  for (const float width : magnitudes(300, random)) {
+    for (float distance : {0.0f, 1e-7f, 1e-4f, 1.57079f, 1.5708f, 3.14159f, uniform(random),
+                           uniform(random), uniform(random) / std::sqrt(1 + width)}) {
+      for (const float sign : {1.0f, -1.0f}) {
+        widths.push_back(width);
+        distances.push_back(sign * distance);
+      }
+    }
+  }
+  std::vector<float> results(widths.size());
+  subject(widths, distances, results);
+  for (size_t i = 0; i < widths.size(); ++i) {
+    const double truth = scalar(widths[i], distances[i]);
+    ASSERT_NEAR(results[i], truth, 1e-6) << widths[i] << " " << distances[i] << ", seed " << kSeed;
+    // The tail's exponent is at most 81; five roundings of its root.
+    if (distances[i] < 0 && distances[i] > -1.5f && truth > 1e-35) {
+      ASSERT_NEAR(results[i] / truth, 1, 81 * 2 * 5 * 6e-8 + 1e-6)
+          << widths[i] << " " << distances[i] << ", seed " << kSeed;
+    }
+  }
+}
+
+TEST_P(Batch, DirectionalMatchesTheScalarForm) {
+  expect_fractions(
+      [](auto widths, auto distances, auto results) {
+        batch::visible_fraction_directional(widths, distances, results);
+      },
+      [](double width, double distance) { return visible_fraction_directional(width, distance); });
+}
+
+TEST_P(Batch, HemisphereMatchesTheScalarForm) {
+  expect_fractions(
+      [](auto widths, auto distances, auto results) {
+        batch::visible_fraction_hemisphere(widths, distances, results);
+      },
+      [](double width, double distance) { return visible_fraction_hemisphere(width, distance); });
+}
+
+/// Calls on lengths 0..40, from unaligned starts: each element the same as in one long call, and
+/// what surrounds the results untouched.
+TEST_P(Batch, AnyLengthAndAlignmentGivesTheSame) {
+  std::mt19937 random(kSeed);
+  std::vector<float> a(64), b(64), c(64), whole(64);
+  for (size_t i = 0; i < 64; ++i) {
+    const Vector3d v = test::random_direction(random);
+    a[i] = float(std::abs(v.x()));
+    b[i] = float(std::abs(v.y()));
+    c[i] = float(v.z());
+  }
+  const AnisotropicGaussian<float> asg = {{}, 5, 2, 1};
+  const SphericalGaussian<float> sg;
+  using Span = std::span<const float>;
+  using Call = std::function<void(Span, Span, Span, std::span<float>)>;
+  const std::vector<std::pair<const char*, Call>> calls = {
+      {"exp", [](Span, Span, Span z, auto out) { batch::exp(z, out); }},
+      {"sg",
+       [&](Span x, Span y, Span z, auto out) {
+         batch::eval(sg, {x, y, z}, out);
+       }},
+      {"asg",
+       [&](Span x, Span y, Span z, auto out) {
+         batch::eval(asg, {x, y, z}, out);
+       }},
+      {"fast integral",
+       [](Span x, Span y, Span, auto out) { batch::asg_integral(x, y, AsgIntegral::fast, out); }},
+      {"exact integral",
+       [](Span x, Span y, Span, auto out) { batch::asg_integral(x, y, AsgIntegral::exact, out); }},
+      {"directional",
+       [](Span x, Span, Span z, auto out) { batch::visible_fraction_directional(x, z, out); }},
+      {"hemisphere",
+       [](Span x, Span, Span z, auto out) { batch::visible_fraction_hemisphere(x, z, out); }},
+  };
+  for (const auto& [name, call] : calls) {
+    call(a, b, c, whole);
+    for (size_t start = 0; start < 4; ++start) {
+      for (size_t length = 0; length <= 40; ++length) {
+        // Inputs of their own, so that the address sanitizer sees a read past their end.
+        const std::vector<float> x(a.begin() + start, a.begin() + start + length),
+            y(b.begin() + start, b.begin() + start + length),
+            z(c.begin() + start, c.begin() + start + length);
+        constexpr float kCanary = -77;
+        std::vector<float> results(start + length + 20, kCanary);
+        call(x, y, z, std::span(results).subspan(start, length));
+        for (size_t i = 0; i < results.size(); ++i) {
+          const bool inside = i >= start && i < start + length;
+          ASSERT_EQ(results[i], inside ? whole[i] : kCanary)
+              << name << ": element " << i << " of " << length << " from " << start;
+        }
+      }
+    }
+    // Over an input.
+    std::vector<float> x = a, z = c;
+    call(x, b, z, x);
+    EXPECT_EQ(x, whole) << name;
+  }
+}
+
+TEST_P(Batch, NaNAndInfinityDoNotHang) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  for (const float bad : {nan, infinity, -infinity}) {
+    const std::vector<float> x(20, bad);
+    std::vector<float> results(20);
+    batch::exp(x, results);
+    batch::eval(AnisotropicGaussian<float>(), {x, x, x}, results);
+    batch::eval(SphericalGaussian<float>(), {x, x, x}, results);
+    batch::asg_integral(x, x, AsgIntegral::exact, results);
+    batch::visible_fraction_directional(x, x, results);
+    batch::visible_fraction_hemisphere(x, x, results);
+  }
+}
+
+TEST(InstructionSets, UnknownNamesAreRefused) {
+  EXPECT_FALSE(batch::instruction_sets().empty());
+  EXPECT_FALSE(batch::use_instruction_set("Z80"));
+}
+
+}  // namespace
+}  // namespace burnish
