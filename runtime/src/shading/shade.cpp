@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "burnish/light/lobe_moments.h"
+#include "burnish/sphere/asg_product.h"
 #include "burnish/sphere/spherical_warp.h"
 #include "burnish/visibility/ssdf.h"
 

@@ -39,10 +39,11 @@ struct AsgAzimuth {
 };
 
 /// The azimuth at psi, for bandwidth_x >= bandwidth_y; squeeze = (bandwidth_y + offset) /
-/// (bandwidth_x + offset).
+/// (bandwidth_x + offset). Two arguments for psi, because near 0 one cannot be had from the other.
 template <class T>
-AsgAzimuth<T> asg_azimuth(T bandwidth_x, T bandwidth_y, T squeeze, T cos_squared_psi) {
-  const T x = squeeze * cos_squared_psi, y = 1 - cos_squared_psi;
+AsgAzimuth<T> asg_azimuth(T bandwidth_x, T bandwidth_y, T squeeze, T cos_squared_psi,
+                          T sin_squared_psi) {
+  const T x = squeeze * cos_squared_psi, y = sin_squared_psi;
   const T scale = 1 / (x + y);
   return {x * scale, y * scale, bandwidth_x * (x * scale) + bandwidth_y * (y * scale)};
 }
@@ -78,7 +79,7 @@ T asg_integral_midpoints(T bandwidth_x, T bandwidth_y) {
   const T squeeze = (small + kOffset) / (large + kOffset);
   T sum = 0;
   for (const T cos_squared : quarter_turn_cosines_squared<T, N>()) {
-    const T k = asg_azimuth(large, small, squeeze, cos_squared).bandwidth;
+    const T k = asg_azimuth(large, small, squeeze, cos_squared, 1 - cos_squared).bandwidth;
     sum += (k + kOffset) * one_minus_exp_over(k);
   }
   return kPi<T> / (std::sqrt(large + kOffset) * std::sqrt(small + kOffset)) * (sum / T(N));
