@@ -269,8 +269,7 @@ TYPED_TEST(Sg, ClampedCosineKeepsItsStatedError) {
       here = std::max(here,
                       std::abs(value - clamped_cosine_by_quadrature(lobe.sharpness, alpha)) / peak);
     }
-    const bool narrow_or_wide = lobe.sharpness < 2 || lobe.sharpness > 20;
-    EXPECT_LT(here, narrow_or_wide ? 4e-4 : 1.6e-3) << lobe.sharpness;
+    EXPECT_LT(here, 6e-5) << lobe.sharpness;
     worst = std::max(worst, here);
     for (const double alpha : {0.0, kPi<double>}) {
       const Vector3<T> normal(0, 0, T(std::cos(alpha)));
@@ -283,7 +282,7 @@ TYPED_TEST(Sg, ClampedCosineKeepsItsStatedError) {
           << lobe.sharpness << " " << alpha;
     }
   }
-  EXPECT_GT(worst, 1e-3);  // the statement is not slack
+  EXPECT_GT(worst, 5e-5);  // the statement is not slack
 }
 
 TYPED_TEST(Sg, ClampedCosineOfExtremeLobes) {
