@@ -248,5 +248,161 @@ TYPED_TEST(SphericalWarp, DividingByTheJacobianKeepsTheIntegral) {
   }
 }
 
+TYPED_TEST(SphericalWarp, CutNormalHasTheMomentsOfItsPositivePart) {
+  using T = TypeParam;
+  const double deviation = 0.3;
+  for (const double ratio : {-3.5, -1.0, 0.0, 1.0, 4.0, 5.99, 6.01, 30.0}) {
+    const double mean = ratio * deviation;
+    double moment[4] = {};
+    for (const auto& [s, weight] : test::gauss_legendre(200, std::max(0.0, mean - 9 * deviation),
+                                                        std::max(mean, 0.0) + 9 * deviation)) {
+      const double density = std::exp(-std::pow((s - mean) / deviation, 2) / 2) /
+                             (deviation * std::sqrt(2 * kPi<double>));
+      for (int k = 1; k < 4; ++k) moment[k] += weight * density * std::pow(s, k);
+    }
+    const auto cut = internal::cut_normal(T(mean), T(deviation));
+    // What is cut at 6 deviations is 1e-10; below 0 the terms cancel, to a 1000th of the last one.
+    const double tolerance = 1e3 * std::numeric_limits<T>::epsilon() + (ratio > 4 ? 1e-9 : 0);
+    EXPECT_NEAR(cut.mean / moment[1], 1, tolerance) << ratio;
+    EXPECT_NEAR(cut.weighted_mean / (moment[2] / moment[1]), 1, tolerance) << ratio;
+    EXPECT_NEAR(cut.weighted_square / (moment[3] / moment[1]), 1, tolerance) << ratio;
+  }
+}
+
+/// Mean of the incoming direction and the integral of D(h(i)) over i, as sums over half vectors in
+/// the orthographic disc, where the lobe is a plane Gaussian and di = 4 o.h dh.
+struct WarpTruth {
+  double integral = 0;
+  Vector3d mean = Vector3d::Zero();
+};
+
+WarpTruth warp_truth(const AnisotropicGaussian<double>& half, const Vector3d& outgoing) {
+  WarpTruth truth;
+  static const auto rule = test::gauss_legendre(200, -1, 1);
+  const auto reach = [](double bandwidth) { return std::min(1.0, 6 / std::sqrt(2 * bandwidth)); };
+  for (const auto& [t, weight_t] : rule) {
+    const double y = t * reach(half.bandwidth_y);
+    const double width = std::min(std::sqrt(1 - y * y), reach(half.bandwidth_x));
+    for (const auto& [u, weight_u] : rule) {
+      const double x = u * width;
+      const Vector3d h = half.frame.to_world({x, y, std::sqrt(1 - x * x - y * y)});
+      const double s = h.dot(outgoing);
+      if (s <= 0) continue;
+      const double weight = weight_t * weight_u * width * reach(half.bandwidth_y) *
+                            std::exp(-half.bandwidth_x * x * x - half.bandwidth_y * y * y);
+      truth.integral += weight * 4 * s;
+      truth.mean += weight * 4 * s * (2 * s * h - outgoing);
+    }
+  }
+  truth.mean.normalize();
+  return truth;
+}
+
+TYPED_TEST(SphericalWarp, MeanFormKeepsTheMeanDirectionAndTheIntegral) {
+  using T = TypeParam;
+  // A normal variable lacks the third moments of s: those of the lobe and, near the horizon, those
+  // of the cut. They move the axis by a part of the variance of the long axis, 1 / (2 bandwidth).
+  const struct {
+    double bandwidth_x, bandwidth_y, integral_error;
+  } rows[] = {{400, 40, .01}, {100, 10, .01}, {30, 30, .01}, {10, 1, .1}};
+  for (const auto& row : rows) {
+    const auto shape = make_lobe_shape(T(row.bandwidth_x), T(row.bandwidth_y));
+    for (const double angle : {0.0, 0.5, 1.0, 1.4, kHalfPi}) {
+      for (const double azimuth : {0.0, 0.8, kHalfPi}) {
+        const Vector3d o = view_at({}, angle, azimuth);
+        const auto half = lobe_of<T>({}, row.bandwidth_x, row.bandwidth_y);
+        const WarpedLobe<T> warped = warp_mean_to_incoming<T>(half, shape, o.cast<T>());
+        const WarpTruth truth =
+            warp_truth(lobe_of<double>({}, row.bandwidth_x, row.bandwidth_y), o);
+        SCOPED_TRACE(testing::Message() << row.bandwidth_x << " " << row.bandwidth_y << " at "
+                                        << angle << ", " << azimuth);
+        EXPECT_NEAR(integral(warped.lobe) / truth.integral, 1, row.integral_error);
+        EXPECT_LE(angle_between<double>(warped.lobe.frame.z.template cast<double>(), truth.mean),
+                  0.6 / (2 * row.bandwidth_y));
+        EXPECT_NEAR(integral(warped.lobe) / (warped.jacobian * shape.integral), 1,
+                    20 * std::numeric_limits<T>::epsilon());
+      }
+    }
+  }
+}
+
+TYPED_TEST(SphericalWarp, BothFormsAgreeOnNarrowLobes) {
+  using T = TypeParam;
+  const auto half = lobe_of<T>({}, 1e6, 1e4);
+  const auto shape = make_lobe_shape(half.bandwidth_x, half.bandwidth_y);
+  for (const double angle : {0.0, 1e-5, 0.5, 1.2}) {
+    const Vector3<T> o = view_at({}, angle, 0.6).cast<T>();
+    const WarpedLobe<T> peak = warp_to_incoming(half, o);
+    const WarpedLobe<T> mean = warp_mean_to_incoming(half, shape, o);
+    // The mean leaves the peak by the curvature, variance (5e-5) times tan: some 1e-4.
+    EXPECT_LE(angle_between(peak.lobe.frame.z, mean.lobe.frame.z), 1e-3);
+    EXPECT_NEAR(mean.lobe.amplitude, 1, 1e-3);
+    EXPECT_NEAR(mean.jacobian / peak.jacobian, 1, 1e-3);
+    EXPECT_NEAR(mean.lobe.bandwidth_x / peak.lobe.bandwidth_x, 1, 3e-3);
+    EXPECT_NEAR(mean.lobe.bandwidth_y / peak.lobe.bandwidth_y, 1, 3e-3);
+  }
+}
+
+TYPED_TEST(SphericalWarp, MeanFormFadesAsTheViewPassesTheHorizon) {
+  using T = TypeParam;
+  const auto half = lobe_of<T>({}, 100, 10);
+  const auto shape = make_lobe_shape(half.bandwidth_x, half.bandwidth_y);
+  T before = 10;
+  WarpedLobe<T> last;
+  for (double angle = 0.3; angle < 3.14; angle += 0.001) {
+    const auto warped = warp_mean_to_incoming<T>(half, shape, view_at({}, angle, 1).cast<T>());
+    // E[max(s, 0)] falls with the mean of s; what the deviation adds by turning is below 1e-3.
+    EXPECT_LE(warped.jacobian, before + T(1e-5)) << angle;
+    if (angle > 0.3) {
+      EXPECT_LE(angle_between(warped.lobe.frame.z, last.lobe.frame.z), 0.02) << angle;
+    }
+    before = warped.jacobian;
+    last = warped;
+  }
+  EXPECT_EQ(before, 0);
+  EXPECT_EQ(last.lobe.amplitude, 0);
+}
+
+TYPED_TEST(SphericalWarp, MeanFormStaysFiniteForEveryBandwidthAndView) {
+  using T = TypeParam;
+  using Limits = std::numeric_limits<T>;
+  const double epsilon = Limits::epsilon();
+  for (const double x :
+       {0.0, double(Limits::denorm_min()), 1e-8, 1e-3, 1.0, 1e3, 1e8, double(Limits::max())}) {
+    for (const double ratio : {1.0, 1 + epsilon, 10.0, 1e6}) {
+      const T bandwidth_x = T(x), bandwidth_y = T(x / ratio);
+      const auto shape = make_lobe_shape(bandwidth_x, bandwidth_y);
+      for (const double angle : {0.0, epsilon, 1e-4, 1.0, 1.5, kHalfPi - epsilon, kHalfPi,
+                                 kHalfPi + epsilon, 1.7, 3.0, kPi<double> - epsilon, kPi<double>}) {
+        for (const double amplitude : {0.0, double(Limits::denorm_min()), 1e30, -1.0}) {
+          const AnisotropicGaussian<T> half{{}, bandwidth_x, bandwidth_y, T(amplitude)};
+          const Vector3<T> o = view_at({}, angle, 0.4).cast<T>();
+          const WarpedLobe<T> warped = warp_mean_to_incoming(half, shape, o);
+          const AnisotropicGaussian<T>& lobe = warped.lobe;
+          SCOPED_TRACE(testing::Message() << x << " " << ratio << " " << angle);
+          EXPECT_LE(frame_error(lobe.frame), 40 * epsilon);
+          EXPECT_TRUE(std::isfinite(lobe.bandwidth_x) && std::isfinite(lobe.bandwidth_y));
+          EXPECT_GE(lobe.bandwidth_y, 0);
+          EXPECT_TRUE(std::isfinite(lobe.amplitude));
+          EXPECT_GE(lobe.amplitude * amplitude, 0);
+          EXPECT_GE(warped.jacobian, 0);
+          EXPECT_LE(warped.jacobian, 4 + 8 * T(epsilon));
+          const auto exact = warp_mean_to_incoming<double>(
+              {{}, half.bandwidth_x, half.bandwidth_y, 1},
+              make_lobe_shape<double>(half.bandwidth_x, half.bandwidth_y),
+              o.template cast<double>());
+          EXPECT_NEAR(warped.jacobian, exact.jacobian, 200 * epsilon);
+          // Of the widest, 4 deviations past the horizon: E has cancelled to 1/20 of its terms, the
+          // mean square to 1/30 of those.
+          if (bandwidth_x <= T(1e8)) {
+            EXPECT_NEAR(lobe.bandwidth_x, exact.lobe.bandwidth_x,
+                        1e4 * epsilon * exact.lobe.bandwidth_x + Limits::denorm_min());
+          }
+        }
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace burnish
