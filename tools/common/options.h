@@ -10,7 +10,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "burnish/sphere/direction.h"
+#include "burnish/light/rgb.h"
 
 /// Options whose help states range, unit and default, and whose errors state what was found and
 /// what is accepted.

@@ -3,6 +3,7 @@
 #include <span>
 #include <string>
 
+#include "burnish/light/rgb.h"
 #include "burnish/shading/transfer.h"
 
 namespace burnish {

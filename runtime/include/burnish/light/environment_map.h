@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "burnish/light/rgb.h"
 #include "burnish/sphere/direction.h"
 
 namespace burnish {

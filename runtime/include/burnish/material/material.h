@@ -1,5 +1,6 @@
 #pragma once
 
+#include "burnish/light/rgb.h"
 #include "burnish/sphere/anisotropic_gaussian.h"
 #include "burnish/sphere/frame.h"
 

@@ -17,14 +17,6 @@ using Vector3 = Eigen::Matrix<T, 3, 1>;
 using Vector3f = Vector3<float>;
 using Vector3d = Vector3<double>;
 
-/// Linear RGB, Rec. 709 primaries.
-using Rgb = Eigen::Array3f;
-
-/// Luminance of a linear Rec. 709 colour.
-inline float luminance(const Rgb& color) {
-  return 0.2126f * color.x() + 0.7152f * color.y() + 0.0722f * color.z();
-}
-
 template <class T>
 inline constexpr T kPi = T(3.14159265358979323846264338327950288L);
 
