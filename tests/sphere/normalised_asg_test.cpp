@@ -6,6 +6,7 @@
 
 #include "support/quadrature.h"
 #include "support/sphere_sampling.h"
+#include "support/stored.h"
 
 namespace burnish {
 namespace {
@@ -36,7 +37,7 @@ TYPED_TEST(Nasg, ValueMatchesTheDefinition) {
     const double sharpness = std::pow(10, std::uniform_real_distribution<double>(-3, 2)(random));
     const double anisotropy = std::pow(10, std::uniform_real_distribution<double>(-3, 3)(random));
     const NormalisedAsg<T> lobe = lobe_of<T>(sharpness, anisotropy);
-    const Vector3<T> v = test::random_direction(random).cast<T>();
+    const Vector3<T> v = test::stored<T>(test::random_direction(random));
     const NormalisedAsg<double> same = lobe_of<double>(lobe.sharpness, lobe.anisotropy);
     const double truth = double(nasg_by_definition(same, v.template cast<double>()));
     // The exponent is anisotropy times at most |log K| plus twice the sharpness, each rounded.

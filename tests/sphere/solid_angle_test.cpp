@@ -6,6 +6,7 @@
 
 #include "burnish/sphere/octahedral_map.h"
 #include "support/quadrature.h"
+#include "support/stored.h"
 
 namespace burnish {
 namespace {
@@ -47,9 +48,9 @@ TYPED_TEST(SolidAngle, OfRandomTrianglesIsTheirAngleExcess) {
   const unsigned seed = 41;
   std::mt19937 random(seed);
   for (int i = 0; i < 2000; ++i) {
-    const Vector3<T> a = test::random_direction(random).cast<T>(),
-                     b = test::random_direction(random).cast<T>(),
-                     c = test::random_direction(random).cast<T>();
+    const Vector3<T> a = test::stored<T>(test::random_direction(random)),
+                     b = test::stored<T>(test::random_direction(random)),
+                     c = test::stored<T>(test::random_direction(random));
     const double truth = double(
         by_angles(a.template cast<double>(), b.template cast<double>(), c.template cast<double>()));
     // atan2 magnifies its arguments' rounding, and that of the corners' lengths, by the inverse of
@@ -63,31 +64,51 @@ TYPED_TEST(SolidAngle, OfRandomTrianglesIsTheirAngleExcess) {
 
 TYPED_TEST(SolidAngle, OfTinyTrianglesAndSliversIsTheirPlaneArea) {
   using T = TypeParam;
-  // Around +z, with sides along x and y of any proportion: half their product, to the square of the
-  // larger.
-  for (const double width : {1e-3, 1e-5, 1e-8, 1e-15})
-    for (const double height : {1e-3, 1e-6, 1e-12}) {
+  const unsigned seed = 42;
+  std::mt19937 random(seed);
+  for (const double width : {1e-3, 1e-4, 1e-5})
+    for (const double height : {1e-3, 1e-4, 1e-5}) {
+      const Frame<double> f = test::random_frame(test::random_direction(random), random);
+      const Vector3<T> a = test::stored<T>(f.z),
+                       b = test::stored<T>((f.z + width * f.x).normalized()),
+                       c = test::stored<T>((f.z + height * f.y).normalized());
+      // Of the corners as they are stored; the sphere bulges by the square of the size.
+      const Vector3d ab = b.template cast<double>() - a.template cast<double>(),
+                     ac = c.template cast<double>() - a.template cast<double>();
+      const double truth = std::abs(ab.cross(ac).dot(a.template cast<double>())) / 2;
+      const double size = width * width + height * height;
+      EXPECT_NEAR(triangle_solid_angle(a, b, c) / truth, 1,
+                  size + 16 * this->kEpsilon * std::max(width / height, height / width))
+          << width << " " << height << " seed " << seed;
+    }
+  // Around +z with exact zeros, down to where the sides are denormal.
+  for (const double width : {1e-5, 1e-15})
+    for (const double height : {1e-6, 1e-20}) {
       const Vector3<T> a(0, 0, 1), b(T(width), 0, 1), c(0, T(height), 1);
       const double truth = double(b.x()) * double(c.y()) / 2;
-      EXPECT_NEAR(triangle_solid_angle(a, b, c) / truth, 1, 1e-6 + 8 * this->kEpsilon)
-          << width << " " << height;
+      EXPECT_NEAR(triangle_solid_angle(a, b, c) / truth, 1, 1e-6) << width << " " << height;
     }
   const Vector3<T> z = Vector3<T>::UnitZ(), x = Vector3<T>::UnitX();
   EXPECT_EQ(triangle_solid_angle(z, z, x), 0);
   EXPECT_EQ(triangle_solid_angle(z, z, z), 0);
 }
 
-TYPED_TEST(SolidAngle, OfTrianglesWithOppositeCornersIsFiniteAndOfThinLunesSmall) {
+TYPED_TEST(SolidAngle, OfTrianglesWithNearlyOppositeCornersIsTheirAngleExcess) {
   using T = TypeParam;
   const Vector3<T> z = Vector3<T>::UnitZ(), x = Vector3<T>::UnitX();
   EXPECT_EQ(triangle_solid_angle(z, Vector3<T>(-z), x), 0);
-  // Corners z and nearly -z, tilted by t toward y, and x: half of the lune between them. Its sides
-  // leave z toward x and toward the tilted corner's meridian, 90 degrees apart.
-  for (const double tilt : {1e-2, 1e-4, 1e-6}) {
-    const Vector3<T> beside(0, T(std::sin(tilt)), T(-std::cos(tilt)));
-    const double truth = double(by_angles(z.template cast<double>(), beside.template cast<double>(),
-                                          x.template cast<double>()));
-    EXPECT_NEAR(triangle_solid_angle(z, beside, x) / truth, 1, 16 * this->kEpsilon) << tilt;
+  const unsigned seed = 43;
+  std::mt19937 random(seed);
+  for (const double tilt : {1e-2, 1e-3, 1e-4}) {
+    const Frame<double> f = test::random_frame(test::random_direction(random), random);
+    const Vector3<T> a = test::stored<T>(f.z), c = test::stored<T>(f.x),
+                     b = test::stored<T>(std::sin(tilt) * f.y - std::cos(tilt) * f.z);
+    const double truth = double(
+        by_angles(a.template cast<double>(), b.template cast<double>(), c.template cast<double>()));
+    // a and c are orthogonal to rounding only, which the tilt is measured against.
+    EXPECT_NEAR(triangle_solid_angle(a, b, c) / truth, 1,
+                8 * this->kEpsilon + std::pow(this->kEpsilon / tilt, 2))
+        << tilt << " seed " << seed;
   }
 }
 
