@@ -80,11 +80,11 @@ HWY_INLINE V asg_integral_exact(D d, V bandwidth_x, V bandwidth_y) {
   return hn::Div(hn::Mul(hn::Set(d, 3.14159265f / kPoints), sum), roots);
 }
 
-/// Sine of a distance, held to [-pi/2, pi/2].
+/// A distance, held to [-pi/2, pi/2].
 template <class D, class V>
-HWY_INLINE V sine_of_distance(D d, V distance) {
+HWY_INLINE V held_distance(D d, V distance) {
   const V limit = hn::Set(d, 1.57079633f);
-  return sine(d, hn::Max(hn::Min(distance, limit), hn::Neg(limit)));
+  return hn::Max(hn::Min(distance, limit), hn::Neg(limit));
 }
 
 /// `hidden` is the fraction for a distance of |sine|: the fraction for `sine`.
@@ -96,53 +96,71 @@ HWY_INLINE V visible_from_hidden(D d, V hidden, V sine) {
 /// visible_fraction_directional.
 template <class D, class V>
 HWY_INLINE V visible_fraction_directional(D d, V bandwidth_across, V distance) {
-  const V s = sine_of_distance(d, distance);
+  const V s = sine(d, held_distance(d, distance));
   const V root = hn::Max(hn::Sqrt(bandwidth_across), hn::Set(d, 1e-18f));
   return visible_from_hidden(d, gaussian_tail(d, hn::Mul(root, hn::Abs(s)), root), s);
 }
 
-/// HemisphereShape, see burnish/sphere/half_space.h.
+/// HemisphereShape, see burnish/sphere/half_space.h; squares of two of its members.
 template <class V>
 struct HemisphereShape {
-  V opposite, steepness, bend_1, bend_2, far;
+  V opposite, steepness_squared, bend_1, bend_2, far_squared;
 };
 
 /// prepare_hemisphere.
 template <class D, class V>
 HWY_INLINE HemisphereShape<V> prepare_hemisphere(D d, V sharpness) {
-  const V one = hn::Set(d, 1.0f), minus_half = hn::Set(d, -0.5f);
-  const V s = hn::Min(sharpness, hn::Set(d, 1e6f)), square = hn::Mul(s, s);
+  const V one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  const V s = hn::Min(sharpness, hn::Set(d, 1e4f));
+  const V half_square = hn::Mul(half, hn::Mul(s, s));
   const V e = exp(d, hn::Neg(sharpness));
   HemisphereShape<V> shape;
   shape.opposite = hn::Div(e, hn::Add(one, e));
-  const V slope = hn::Div(hn::Mul(s, polynomial(d, s, 7.2287146f, -1.13026233f, 0.5f)),
-                          polynomial(d, s, 21.86925514f, 12.03404045f, -1.51052466f, 1.0f));
-  shape.steepness = hn::Max(hn::Mul(hn::Sqrt(sharpness), hn::Sqrt(slope)), hn::Set(d, 1e-18f));
-  const V fourth = hn::Set(d, 8418.2f);
-  shape.bend_1 =
-      hn::Div(hn::Mul(minus_half, square), polynomial(d, s, 3.92014157f, 0.21340557f, 1.0f));
-  shape.bend_2 = hn::Div(hn::Mul(hn::Mul(minus_half, shape.bend_1), fourth),
-                         hn::MulAdd(square, square, fourth));
-  shape.far = hn::Div(shape.steepness, hn::Sqrt(hn::Add(one, hn::Add(shape.bend_1, shape.bend_2))));
+  // Three quotients with one division.
+  const V below_slope = polynomial(d, s, 26.1523456f, 14.3527802f, 1.02200273f, 1.0f);
+  const V below_1 = polynomial(d, s, 5.17400423f, -0.26223606f, 1.0f);
+  const V below_2 = hn::MulAdd(hn::Mul(half_square, s), hn::Set(d, 2 / 1208.6f), one);
+  const V below_both = hn::Mul(below_1, below_2);
+  const V inverse = hn::Div(one, hn::Mul(below_slope, below_both));
+  const V slope = hn::Mul(hn::Mul(s, polynomial(d, s, 7.45753026f, 0.13600136f, 0.5f)),
+                          hn::Mul(inverse, below_both));
+  shape.steepness_squared = hn::Max(hn::Mul(sharpness, slope), hn::Set(d, 1e-36f));
+  const V bend = hn::Mul(half_square, hn::Mul(inverse, below_slope));
+  shape.bend_1 = hn::Neg(hn::Mul(bend, below_2));
+  shape.bend_2 = hn::Mul(half, bend);
+  shape.far_squared =
+      hn::Div(shape.steepness_squared, hn::Add(one, hn::Add(shape.bend_1, shape.bend_2)));
   return shape;
 }
 
-/// hemisphere_fraction.
+/// hemisphere_fraction for a distance in [-pi/2, pi/2], given the sine of half of it.
 template <class D, class V>
-HWY_INLINE V hemisphere_fraction(D d, const HemisphereShape<V>& shape, V sine) {
-  const V one = hn::Set(d, 1.0f);
-  const V u = hn::Sub(one, hn::Sqrt(hn::Max(hn::NegMulAdd(sine, sine, one), hn::Zero(d))));
+HWY_INLINE V hemisphere_fraction(D d, const HemisphereShape<V>& shape, V half_sine) {
+  const V one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f);
+  const V u = hn::Mul(two, hn::Mul(half_sine, half_sine));
   const V bent = hn::MulAdd(u, hn::MulAdd(u, shape.bend_2, shape.bend_1), one);
-  const V x = hn::Div(hn::Mul(shape.steepness, hn::Abs(sine)), hn::Sqrt(bent));
-  const V tail = gaussian_tail(d, hn::Min(x, shape.far), shape.far);
-  const V reach = hn::NegMulAdd(hn::Set(d, 2.0f), shape.opposite, one);
-  return visible_from_hidden(d, hn::MulAdd(reach, tail, shape.opposite), sine);
+  const V sine_squared = hn::Mul(u, hn::Sub(two, u));
+  const V x_squared = hn::Div(hn::Mul(shape.steepness_squared, sine_squared), bent);
+  // gaussian_tail of the roots. A wide lobe's cancels, but has a weight that vanishes with it.
+  const V p = hn::Set(d, 0.4f), limit = hn::Set(d, 1e4f);
+  const V below_x = hn::MulAdd(p, hn::Sqrt(hn::Min(x_squared, limit)), one);
+  const V below_far = hn::MulAdd(p, hn::Sqrt(hn::Min(shape.far_squared, limit)), one);
+  const V inverse = hn::Div(one, hn::Mul(below_x, below_far));
+  const V t_x = hn::Mul(inverse, below_far), t_far = hn::Mul(inverse, below_x);
+  const V erfc_x = hn::Mul(exp(d, hn::Neg(x_squared)), hn::Mul(t_x, erfc_curve(d, t_x)));
+  const V erfc_far =
+      hn::Mul(exp(d, hn::Neg(shape.far_squared)), hn::Mul(t_far, erfc_curve(d, t_far)));
+  const V whole = hn::Max(hn::Sub(one, erfc_far), hn::Set(d, 1e-6f));
+  const V tail = hn::Max(hn::Div(hn::Sub(erfc_x, erfc_far), hn::Add(whole, whole)), hn::Zero(d));
+  const V reach = hn::NegMulAdd(two, shape.opposite, one);
+  return visible_from_hidden(d, hn::MulAdd(reach, tail, shape.opposite), half_sine);
 }
 
 /// visible_fraction_hemisphere, fast level.
 template <class D, class V>
 HWY_INLINE V visible_fraction_hemisphere(D d, V sharpness, V distance) {
-  return hemisphere_fraction(d, prepare_hemisphere(d, sharpness), sine_of_distance(d, distance));
+  const V half = hn::Mul(hn::Set(d, 0.5f), held_distance(d, distance));
+  return hemisphere_fraction(d, prepare_hemisphere(d, sharpness), sine_of_small(d, half));
 }
 
 }  // namespace HWY_NAMESPACE

@@ -15,7 +15,8 @@ namespace burnish {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// c0 + c1 x + c2 x^2 + ...
+/// c0 + c1 x + c2 x^2 + ... by Horner's rule: what calls this has enough to do meanwhile, and
+/// Estrin's scheme, with its additional multiplications, was slower.
 template <class D, class V>
 HWY_INLINE V polynomial(D d, V, float last) {
   return hn::Set(d, last);
@@ -31,15 +32,16 @@ struct ExpParts {
   V scale, rest;
 };
 
-/// Of exp(x + correction) for x in [-87.3, 88], |correction| < 0.1.
-template <class D, class V>
-HWY_INLINE ExpParts<V> exp_parts(D d, V x, V correction) {
+/// Of exp(x + correction) for x in [-87.3, 88], |correction| < 0.1; the correction may be left out.
+template <class D, class V, class... Correction>
+HWY_INLINE ExpParts<V> exp_parts(D d, V x, Correction... correction) {
   const hn::RebindToSigned<D> di;
   const auto exponent = hn::NearestInt(hn::Mul(x, hn::Set(d, 1.44269504f)));
   const V q = hn::ConvertTo(d, exponent);
   // ln 2 in two parts, of which the first has so few digits that q times it is exact.
   V r = hn::NegMulAdd(q, hn::Set(d, 0.693359375f), x);
-  r = hn::Add(hn::NegMulAdd(q, hn::Set(d, -2.12194440e-4f), r), correction);
+  r = hn::NegMulAdd(q, hn::Set(d, -2.12194440e-4f), r);
+  if constexpr (sizeof...(correction) > 0) r = hn::Add(r, correction...);
   const V curve = polynomial(d, r, 0.499999934f, 0.166665206f, 0.0416683879f, 0.00836871541f,
                              0.00138145999f);  // minimax, 3e-9
   const V scale = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(exponent, hn::Set(di, 127))));
@@ -51,7 +53,7 @@ HWY_INLINE ExpParts<V> exp_parts(D d, V x, V correction) {
 template <class D, class V>
 HWY_INLINE V exp(D d, V x) {
   const V floor = hn::Set(d, -85.0f);
-  const ExpParts<V> e = exp_parts(d, hn::Max(x, floor), hn::Zero(d));
+  const ExpParts<V> e = exp_parts(d, hn::Max(x, floor));
   return hn::IfThenElseZero(hn::Ge(x, floor), hn::MulAdd(e.scale, e.rest, e.scale));
 }
 
@@ -59,7 +61,7 @@ HWY_INLINE V exp(D d, V x) {
 template <class D, class V>
 HWY_INLINE V one_minus_exp(D d, V x) {
   // From 18 on the result is 1.
-  const ExpParts<V> e = exp_parts(d, hn::Neg(hn::Min(x, hn::Set(d, 18.0f))), hn::Zero(d));
+  const ExpParts<V> e = exp_parts(d, hn::Neg(hn::Min(x, hn::Set(d, 18.0f))));
   return hn::NegMulAdd(e.scale, e.rest, hn::Sub(hn::Set(d, 1.0f), e.scale));
 }
 
@@ -138,6 +140,14 @@ HWY_INLINE V sine(D d, V x) {
   const V square = hn::Mul(x, x);
   const V curve = polynomial(d, square, -0.166666666f, 0.00833333111f, -1.98408682e-4f,
                              2.75253846e-6f, -2.38889115e-8f);
+  return hn::MulAdd(hn::Mul(x, square), curve, x);
+}
+
+/// sin(x) for |x| <= pi / 4: 1 ulp.
+template <class D, class V>
+HWY_INLINE V sine_of_small(D d, V x) {
+  const V square = hn::Mul(x, x);
+  const V curve = polynomial(d, square, -0.166666546f, 0.00833216077f, -1.95152838e-4f);
   return hn::MulAdd(hn::Mul(x, square), curve, x);
 }
 
