@@ -99,17 +99,20 @@ TYPED_TEST(SolidAngle, OfTrianglesWithNearlyOppositeCornersIsTheirAngleExcess) {
   EXPECT_EQ(triangle_solid_angle(z, Vector3<T>(-z), x), 0);
   const unsigned seed = 43;
   std::mt19937 random(seed);
-  for (const double tilt : {1e-2, 1e-3, 1e-4}) {
-    const Frame<double> f = test::random_frame(test::random_direction(random), random);
-    const Vector3<T> a = test::stored<T>(f.z), c = test::stored<T>(f.x),
-                     b = test::stored<T>(std::sin(tilt) * f.y - std::cos(tilt) * f.z);
-    const double truth = double(
-        by_angles(a.template cast<double>(), b.template cast<double>(), c.template cast<double>()));
-    // a and c are orthogonal to rounding only, which the tilt is measured against.
-    EXPECT_NEAR(triangle_solid_angle(a, b, c) / truth, 1,
-                8 * this->kEpsilon + std::pow(this->kEpsilon / tilt, 2))
-        << tilt << " seed " << seed;
-  }
+  for (const double tilt : {1e-2, 1e-3, 1e-4})
+    for (const double azimuth : {0.0, 0.7, 1.4, -0.7}) {
+      const Frame<double> f = test::random_frame(test::random_direction(random), random);
+      const Vector3<T> a = test::stored<T>(f.z),
+                       b = test::stored<T>(std::sin(tilt) * f.y - std::cos(tilt) * f.z),
+                       c = test::stored<T>(std::cos(azimuth) * f.x + std::sin(azimuth) * f.y);
+      const double truth = double(by_angles(a.template cast<double>(), b.template cast<double>(),
+                                            c.template cast<double>()));
+      // c is orthogonal to a to rounding only, and so are their lengths 1: second-order errors,
+      // which are measured against the tilt.
+      EXPECT_NEAR(triangle_solid_angle(a, b, c) / truth, 1,
+                  16 * this->kEpsilon + std::pow(this->kEpsilon / tilt, 2))
+          << tilt << " " << azimuth << " seed " << seed;
+    }
 }
 
 TYPED_TEST(SolidAngle, OfFacesOfASubdividedSphereAddUpToIt) {
