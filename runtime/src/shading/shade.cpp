@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "burnish/light/lobe_moments.h"
 #include "burnish/sphere/asg_product.h"
+#include "burnish/sphere/lobe_moments.h"
 #include "burnish/sphere/spherical_warp.h"
 #include "burnish/visibility/ssdf.h"
 
@@ -99,9 +99,8 @@ float diffuse_integral(const PreparedLobe& light, const ShadingPoint& point,
     return cosine * light.integral *
            visible_fraction(options.visibility, light.lobe, boundary.distance, boundary.gradient);
   }
-  const LobeMoments<float> moments{light.mean_z, light.mean_xx, light.mean_yy, light.variance_z};
   const float unshadowed =
-      light.integral * mean_clamped_cosine(moments, light.lobe.frame.to_local(normal));
+      light.integral * mean_clamped_cosine(light.moments, light.lobe.frame.to_local(normal));
   if (unshadowed <= 0 || visibility.only_horizon()) return unshadowed;
   const AnisotropicGaussian<float> lit = lobe_times_cosine(light.lobe, normal);
   const SsdfSample boundary = visibility.lookup(lit.frame.z);
@@ -136,11 +135,7 @@ PreparedLobe lobe_from_sphere(const SphereLight& sphere, const Vector3f& positio
   // Normalised so that amplitude-one integral times colour is radiance times solid angle.
   prepared.integral = asg_integral_exact(sharpness / 2, sharpness / 2);
   prepared.color = sphere.radiance * (solid_angle / prepared.integral);
-  const LobeMoments<float> moments = cap_moments(cos_edge);
-  prepared.mean_z = moments.mean_z;
-  prepared.mean_xx = moments.mean_xx;
-  prepared.mean_yy = moments.mean_yy;
-  prepared.variance_z = height * height / 12;
+  prepared.moments = cap_moments(height);
   return prepared;
 }
 
@@ -187,16 +182,12 @@ PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options
   prepared.spheres = rig.spheres;
   prepared.lobes.reserve(rig.lobes.size());
   for (const EnvironmentLobe& light : rig.lobes) {
-    const LobeMoments<double> m = asg_moments(light.lobe.bandwidth_x, light.lobe.bandwidth_y);
     PreparedLobe lobe;
     lobe.lobe = light.lobe;
     lobe.lobe.amplitude = 1;
     lobe.color = light.color * light.lobe.amplitude;
     lobe.integral = integral(lobe.lobe, options.integral);
-    lobe.mean_z = static_cast<float>(m.mean_z);
-    lobe.mean_xx = static_cast<float>(m.mean_xx);
-    lobe.mean_yy = static_cast<float>(m.mean_yy);
-    lobe.variance_z = static_cast<float>(m.variance_z);
+    lobe.moments = asg_moments(light.lobe.bandwidth_x, light.lobe.bandwidth_y);
     prepared.lobes.push_back(lobe);
   }
   return prepared;

@@ -9,6 +9,7 @@
 #include "burnish/material/material.h"
 #include "burnish/shading/transfer.h"
 #include "burnish/sphere/half_space.h"
+#include "burnish/sphere/lobe_moments.h"
 
 namespace burnish {
 
@@ -33,8 +34,7 @@ struct PreparedLobe {
   AnisotropicGaussian<float> lobe;  ///< unit amplitude
   Rgb color = Rgb::Zero();          ///< radiance at the axis
   float integral = 0;               ///< of the unit-amplitude lobe
-  float mean_z = 0;                 ///< moments of the normalised lobe in its own frame
-  float mean_xx = 0, mean_yy = 0, variance_z = 0;
+  LobeMoments<float> moments;       ///< of the normalised lobe, in its own frame
 };
 
 /// Lights ready for shading. Immutable while shading, and may be shared between threads.

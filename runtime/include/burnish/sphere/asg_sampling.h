@@ -1,48 +1,18 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <type_traits>
 
 #include "burnish/sphere/anisotropic_gaussian.h"
+#include "burnish/sphere/gauss_legendre.h"
 
 /// Exact importance sampling of an ASG by inversion: two uniform numbers, no rejection, so that
 /// stratified and quasi-random points keep their structure. For all bandwidths from 0 on.
 namespace burnish {
 
 namespace internal {
-
-/// Nodes in (0, 1) and weights of Gauss-Legendre quadrature.
-template <int N>
-struct UnitGauss {
-  std::array<double, N> node, weight;
-};
-
-template <int N>
-const UnitGauss<N>& unit_gauss() {
-  static const UnitGauss<N> rule = [] {
-    UnitGauss<N> r;
-    for (int i = 0; i < N; ++i) {
-      double x = std::cos(kPi<double> * (i + 0.75) / (N + 0.5)), slope = 1;
-      for (int step = 0; step < 8; ++step) {  // Newton on the Legendre polynomial
-        double p0 = 1, p1 = x;
-        for (int k = 2; k <= N; ++k) {
-          const double p2 = ((2 * k - 1) * x * p1 - (k - 1) * p0) / k;
-          p0 = p1;
-          p1 = p2;
-        }
-        slope = N * (x * p1 - p0) / (x * x - 1);
-        x -= p1 / slope;
-      }
-      r.node[i] = (1 - x) / 2;
-      r.weight[i] = 1 / ((1 - x * x) * slope * slope);
-    }
-    return r;
-  }();
-  return rule;
-}
 
 /// psi (asg_integral.h) with G(psi) = u G(pi / 2), G the integral of g: where a uniform number
 /// lands in a quarter turn. g rises with psi, between 1 and the offset, so that G is convex and

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <limits>
 
-#include "burnish/light/lobe_moments.h"
 #include "burnish/sphere/anisotropic_gaussian.h"
+#include "burnish/sphere/lobe_moments.h"
 
 /// Based on: xu2013asg, section 5.2 (Eq. 23-26), corrected: the second derivatives there are twice
 /// what the exponent needs, and no Jacobian enters the amplitude (docs/maths.md, "Spherical warp").
@@ -98,19 +98,23 @@ WarpedLobe<T> warp_to_incoming(const AnisotropicGaussian<T>& half_lobe,
 
 namespace internal {
 
-/// Of a normal variable s that counts only where it is positive: E[s_+], and the means of s and s^2
-/// weighted by s_+. Held at 4 deviations below 0, where E[s_+] counts as 0.
+/// Of a normal variable s that counts only where it is positive, s_+: its mean E[s_+], the means of
+/// s and s^2 weighted by s_+, and the probability of s > 0 over E[s_+]. Held at 4 deviations below
+/// 0, where E[s_+] counts as 0.
 template <class T>
 struct CutNormal {
-  T mean, weighted_mean, weighted_square;
+  T mean, weighted_mean, weighted_square, probability_over_mean;
 };
 
 template <class T>
 CutNormal<T> cut_normal(T mean, T deviation) {
+  constexpr T kSmallest = std::numeric_limits<T>::min();  // for 1 / 0
   const T variance = deviation * deviation;
   if (mean > 6 * deviation)  // nothing is cut
-    return {mean, mean + deviation * (deviation / mean), mean * mean + 3 * variance};
-  const T ratio = std::max(mean / std::max(deviation, std::numeric_limits<T>::min()), T(-4));
+    return {mean, mean + deviation * (deviation / mean), mean * mean + 3 * variance,
+            1 / std::max(mean, kSmallest)};
+  deviation = std::max(deviation, kSmallest);
+  const T ratio = std::max(mean / deviation, T(-4));
   const T density = std::exp(-ratio * ratio / 2) / std::sqrt(2 * kPi<T>);
   const T probability = std::erfc(-ratio / std::sqrt(T(2))) / 2;
   const T excess = density + ratio * probability;
@@ -118,7 +122,8 @@ CutNormal<T> cut_normal(T mean, T deviation) {
   // 2 variance E[s_+].
   const T weighted_mean = deviation * (ratio + probability / excess);
   return {ratio > -4 ? deviation * excess : T(0), weighted_mean,
-          std::max(ratio * deviation * weighted_mean + 2 * variance, T(0))};
+          std::max(ratio * deviation * weighted_mean + 2 * variance, T(0)),
+          probability / excess / deviation};
 }
 
 }  // namespace internal
@@ -132,16 +137,14 @@ struct LobeShape {
 
 template <class T>
 LobeShape<T> make_lobe_shape(T bandwidth_x, T bandwidth_y) {
-  const LobeMoments<double> m = asg_moments(bandwidth_x, bandwidth_y);
-  return {T(asg_integral_exact<double>(bandwidth_x, bandwidth_y)),
-          {T(m.mean_z), T(m.mean_xx), T(m.mean_yy), T(m.variance_z)}};
+  return {asg_integral_exact(bandwidth_x, bandwidth_y), asg_moments(bandwidth_x, bandwidth_y)};
 }
 
 /// The mean form: a lobe of the mean direction and the integral of D(h(i)), for a unit view
 /// `outgoing`, which may be past the horizon of the lobe's axis. s = o.h, taken as a normal
 /// variable that is cut at 0, gives both in closed form (docs/maths.md, "Spherical warp"). For
 /// shading: the integral of lobe, cosine and a light at alpha (.32, .032) and 60/80/88 degrees errs
-/// by .053/.13/.17, in the peak form by .15/.50/.87, and the teeth of a LobeComb by less. The peak
+/// by .05/.11/.15, in the peak form by .15/.50/.87, and the teeth of a LobeComb by less. The peak
 /// form is better for the values of one wide lobe (relative L2 .51 against .65 at 60 degrees), and
 /// beyond alpha .5 for views near the axis. Amplitude and jacobian are 0 where no half vector is
 /// seen.
@@ -154,12 +157,14 @@ WarpedLobe<T> warp_mean_to_incoming(const AnisotropicGaussian<T>& half_lobe,
   const T variance =
       o.x() * o.x() * m.mean_xx + o.y() * o.y() * m.mean_yy + o.z() * o.z() * m.variance_z;
   const internal::CutNormal<T> s = internal::cut_normal(o.z() * m.mean_z, std::sqrt(variance));
-  // E[i] = 2 E[s s_+ h] / E[s_+] - o; by Stein's identity the covariance of h with s adds
-  // 2 (o_x xx, o_y yy, o_z Var z). The ends of a wide lobe count less, since there z is less:
-  // E[x^2 z] / E[z] is xx (1 - xx), nearly.
-  Vector3<T> z(o.x() * (4 * m.mean_xx * (1 - m.mean_xx) - 1),
-               o.y() * (4 * m.mean_yy * (1 - m.mean_yy) - 1),
-               2 * m.mean_z * s.weighted_mean + o.z() * (4 * m.variance_z - 1));
+  // E[i] = 2 E[s s_+ h] / E[s_+] - o. By Stein's identity E[s s_+ h] = E[h] E[s s_+] +
+  // 2 E[s_+] Cov(h, s), plus the probability of s > 0 times the third moment of (s, s, h).
+  const T third = s.probability_over_mean;
+  const T xxz = third * m.mean_xxz, yyz = third * m.mean_yyz, zzz = third * m.mean_zzz;
+  Vector3<T> z(o.x() * (4 * (m.mean_xx + o.z() * xxz) - 1),
+               o.y() * (4 * (m.mean_yy + o.z() * yyz) - 1),
+               2 * m.mean_z * s.weighted_mean + o.z() * (4 * m.variance_z - 1) +
+                   2 * (o.x() * o.x() * xxz + o.y() * o.y() * yyz + o.z() * o.z() * zzz));
   const T length = z.norm();
   z = length > 0 ? Vector3<T>(z / length) : Vector3<T>::UnitZ();
   const Vector3<T> across = internal::across_view(o);
