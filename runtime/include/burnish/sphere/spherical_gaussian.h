@@ -9,10 +9,11 @@
 #include "burnish/sphere/mean_resultant.h"
 #include "burnish/sphere/special_functions.h"
 
-/// Based on: spherical Gaussians (wang2009svbrdf). The forms below are those that stay accurate at
-/// small and at large sharpness; the textbook forms cancel or overflow there. Every function takes
-/// a sharpness from 0 to the largest finite number. A sharpness or amplitude of a result that would
-/// leave the scalar's range becomes the largest finite number.
+/// Based on: spherical Gaussians (wang2009svbrdf); values and samples as in tokuyoshi2025vmf. The
+/// forms below are those that stay accurate at small and at large sharpness; the textbook forms
+/// cancel or overflow there. Every function takes a sharpness from 0 to the largest finite number.
+/// A sharpness or amplitude of a result that would leave the scalar's range becomes the largest
+/// finite number.
 namespace burnish {
 
 /// amplitude * exp(sharpness * (v . axis - 1)).
