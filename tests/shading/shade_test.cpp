@@ -101,8 +101,8 @@ TEST(ShadeDiffuse, UnoccludedWideLightKeepsTheStatedError) {
       const Rgb radiance =
           shade_point(upward_point(), Vector3f::UnitZ(), white, {&lights, nullptr}, {});
       const double truth = diffuse_truth(rig, [](const Vector3d&) { return true; });
-      // mean_clamped_cosine: at most .015 of the lobe's integral.
-      EXPECT_NEAR(radiance.x(), truth, 0.016 * lights.lobes[0].integral)
+      // mean_clamped_cosine: at most .002 of the lobe's integral.
+      EXPECT_NEAR(radiance.x(), truth, 0.002 * lights.lobes[0].integral)
           << bx << " " << by << " " << theta;
     }
   }
@@ -194,9 +194,8 @@ TEST(ShadeSphereLight, FromInsideIsAHemisphereOfLight) {
   white.diffuse = Rgb::Ones();
   const Rgb radiance =
       shade_point(upward_point(), Vector3f::UnitZ(), white, {&lights, nullptr}, {});
-  // The exact value is 1; mean_clamped_cosine takes the uniform sphere's cosine as normal: sqrt(2 /
-  // (3 pi)) for 1/2 is 8 % less.
-  EXPECT_NEAR(radiance.x(), 1, 0.09);
+  // The exact value is 1; mean_clamped_cosine is good to .002.
+  EXPECT_NEAR(radiance.x(), 1, 0.002);
 }
 
 TEST(ShadeSpecular, ConstantEnvironmentGivesTheAlbedo) {
