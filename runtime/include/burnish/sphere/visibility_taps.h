@@ -103,7 +103,7 @@ LobeTaps<T> quantile_taps(const QuantileTapTable<T>& table, const AnisotropicGau
 /// something with the members `distance` (radians, positive: visible) and `gradient` (tangent to
 /// the sphere, toward rising distance). 1 where every tap is wholly visible and 0 where every tap
 /// is hidden, exactly. Mean absolute error, over five kinds of occluders at anisotropies 1/3/10/30,
-/// bandwidths 20..2000: one tap .029/.038/.059/.076, five quantile taps .017/.011/.013/.018 (comb
+/// bandwidths 20..2000: one tap .029/.038/.058/.075, five quantile taps .017/.011/.013/.018 (comb
 /// teeth .018/.013/.019/.028), nine .016/.008/.007/.009.
 template <class T, class Lookup>
 T visible_fraction(VisibilityModel model, const AnisotropicGaussian<T>& lobe,
