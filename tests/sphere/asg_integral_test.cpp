@@ -157,6 +157,16 @@ TEST(AsgIntegralLevels, FastAndSeriesKeepThePapersBounds) {
   EXPECT_NEAR(fast_above_1, 0.58, 0.005);
 }
 
+TEST(AsgIntegralLevels, FastLevelOfWideLobesIsHeldToTheDisc) {
+  // Both bandwidths below 1: pi, where the truth is between pi (1 - 1 / e) and pi.
+  for (const double a : {0.0, 1e-300, 1e-8, 0.1, 0.99}) {
+    for (const double b : {0.0, 1e-8, 0.3, 0.99}) {
+      EXPECT_NEAR(asg_integral_fast(a, b), kPi<double>, 1e-14);
+      EXPECT_LT(asg_integral_fast(a, b) / asg_integral_exact(a, b), 1 / (1 - std::exp(-1.0)));
+    }
+  }
+}
+
 TYPED_TEST(AsgIntegralTest, SeriesLevelNeverExceedsItsBoundInEitherType) {
   using T = TypeParam;
   // Below 1 it is the exact form; above, the paper's bound plus rounding.

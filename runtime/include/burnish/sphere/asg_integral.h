@@ -14,7 +14,8 @@
 namespace burnish {
 
 enum class AsgIntegral {
-  fast,    ///< xu2013asg Eq. 11, at most pi: 0.68 % for bandwidths > 5, 58 % > 1, 7x below
+  fast,  ///< xu2013asg Eq. 11, at most pi: 0.68 % for bandwidths > 5, 58 % if both are above or
+         ///< both below 1; without bound for a long lobe with one below 1
   series,  ///< xu2013asg Eq. 10: 0.027 % for bandwidths > 5, 5.2 % > 1; below 1 it is `exact`
   exact,   ///< to rounding: 4e-7 in float, 6e-15 in double, for all bandwidths
 };
