@@ -229,6 +229,143 @@ TEST_P(Batch, HemisphereMatchesTheScalarForm) {
       [](double width, double distance) { return visible_fraction_hemisphere(width, distance); });
 }
 
+TEST_P(Batch, ExactHemisphereMatchesTheScalarForm) {
+  expect_fractions(
+      [](auto widths, auto distances, auto results) {
+        batch::visible_fraction_hemisphere(widths, distances, results, HemisphereLevel::exact);
+      },
+      [](double width, double distance) {
+        return visible_fraction_hemisphere(width, distance, HemisphereLevel::exact);
+      });
+}
+
+TEST_P(Batch, SgIntegralMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  const std::vector<float> sharpness = magnitudes(500, random);
+  std::vector<float> results(sharpness.size());
+  batch::sg_integral(sharpness, results);
+  for (size_t i = 0; i < results.size(); ++i) {
+    const double truth = integral(SphericalGaussian<double>{Vector3d::UnitZ(), sharpness[i], 1});
+    // Five roundings; a denormal result (of the largest finite sharpness) has fewer digits.
+    ASSERT_NEAR(results[i], truth, 6e-7 * truth + kDenormal) << sharpness[i] << ", seed " << kSeed;
+  }
+}
+
+TEST_P(Batch, SgInnerProductMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  for (const float sharpness : magnitudes(10, random)) {
+    const Vector3d axis = test::random_direction(random);
+    const SphericalGaussian<float> lobe = {axis.cast<float>(), sharpness, 2};
+    for (const float other : magnitudes(10, random)) {
+      const DirectionArrays axes = directions_around(axis, 20, random);
+      const size_t size = axes.x.size();
+      const std::vector<float> others(size, other), amplitudes(size, 3);
+      std::vector<float> results(size);
+      batch::inner_product(lobe, {axes.spans(), others, amplitudes}, results);
+      for (size_t i = 0; i < size; ++i) {
+        const SphericalGaussian<double> a = {lobe.axis.cast<double>(), sharpness, 2};
+        const SphericalGaussian<double> b = {axes.at(i).cast<double>(), other, 3};
+        const double truth = inner_product(a, b);
+        const double low = std::min(a.sharpness, b.sharpness);
+        const double exponent = low / 2 * (a.axis - b.axis).squaredNorm();  // or less, by half
+        // Near opposite axes of like sharpness, the product's sharpness L errs by 1e-7 of theirs,
+        // and its mass by 1e-7 low / (L + 1), besides the roundings of mass and exponential.
+        const double sharp = product(a, b).sharpness;
+        const double bound =
+            truth * (1e-6 + 1e-6 * exponent + 6e-7 * low / (sharp + 1)) + 6 * 4 * 3.2 * 1.4e-37;
+        ASSERT_NEAR(results[i], truth, bound)
+            << sharpness << " " << other << " " << exponent << ", seed " << kSeed;
+      }
+    }
+  }
+}
+
+TEST_P(Batch, LobesEachAtItsDirectionMatchTheScalarForm) {
+  std::mt19937 random(kSeed);
+  const std::vector<float> widths = magnitudes(500, random);
+  DirectionArrays x, z, directions;
+  std::vector<AnisotropicGaussian<float>> lobes;
+  std::vector<float> bandwidth_x, bandwidth_y, amplitude;
+  for (const float width : widths) {
+    const Vector3d axis = test::random_direction(random);
+    const Frame<double> frame = test::random_frame(axis, random);
+    x.add(frame.x);
+    z.add(frame.z);
+    directions.add(
+        (axis + test::random_direction(random) / std::sqrt(1 + double(width))).normalized());
+    bandwidth_x.push_back(width);
+    bandwidth_y.push_back(widths[bandwidth_y.size() * 7 % widths.size()]);
+    amplitude.push_back(float(bandwidth_y.size()));
+    lobes.push_back({{x.at(x.x.size() - 1), z.at(z.x.size() - 1).cross(x.at(x.x.size() - 1)),
+                      z.at(z.x.size() - 1)},
+                     bandwidth_x.back(),
+                     bandwidth_y.back(),
+                     amplitude.back()});
+  }
+  std::vector<float> results(widths.size());
+  batch::eval({x.spans(), z.spans(), bandwidth_x, bandwidth_y, amplitude}, directions.spans(),
+              results);
+  for (size_t i = 0; i < results.size(); ++i) {
+    const auto [value, bound] = asg_and_bound(lobes[i], directions.at(i));
+    // y = z x x is rounded once more here.
+    ASSERT_NEAR(results[i], value, 2 * bound)
+        << bandwidth_x[i] << " " << bandwidth_y[i] << ", seed " << kSeed;
+  }
+}
+
+TEST_P(Batch, MeanClampedCosineMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  for (const auto& [x, y] : {std::pair{0.0, 0.0},
+                             {1e-3, 1e-3},
+                             {4.0, 1.0},
+                             {100.0, 1.0},
+                             {1e3, 1e3},
+                             {1e8, 1.0},
+                             {1e8, 1e8}}) {
+    const Vector3d axis = test::random_direction(random);
+    const Frame<float> frame = test::random_frame(axis, random).cast<float>();
+    const LobeMoments<float> moments = asg_moments(float(x), float(y));
+    DirectionArrays normals = directions_around(axis, 300, random);
+    // Where the cosine is cut: near the lobe's horizon.
+    for (int i = 0; i < 200; ++i) {
+      const Vector3d across = axis.cross(test::random_direction(random)).normalized();
+      normals.add((across + test::random_direction(random) * std::pow(10.0, -i % 6)).normalized());
+    }
+    std::vector<float> results(normals.x.size());
+    batch::mean_clamped_cosine(moments, frame, normals.spans(), results);
+    for (size_t i = 0; i < results.size(); ++i) {
+      const Vector3d local = frame.cast<double>().to_local(normals.at(i).cast<double>());
+      const double truth = mean_clamped_cosine(moments.cast<double>(), local);
+      // A sum of a dozen terms of at most 1, each after three roundings of a dot product.
+      ASSERT_NEAR(results[i], truth, 2e-6) << x << " " << y << ", seed " << kSeed;
+      ASSERT_GE(results[i], 0);
+    }
+  }
+}
+
+TEST_P(Batch, OctahedralMapMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  DirectionArrays directions;
+  for (int i = 0; i < 3000; ++i) directions.add(test::random_direction(random));
+  for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1)}) {
+    directions.add(axis);
+    directions.add(-axis);
+    for (int i = 0; i < 30; ++i)
+      directions.add((axis + test::random_direction(random) * std::pow(10.0, -i)).normalized());
+  }
+  for (const double x : {1.0, -1.0})
+    for (const double y : {1.0, -1.0}) directions.add(Vector3d(x, y, 0).normalized());
+  std::vector<float> u(directions.x.size()), v(directions.x.size());
+  batch::direction_to_octahedral(directions.spans(), u, v);
+  for (size_t i = 0; i < u.size(); ++i) {
+    const Vector2<double> truth =
+        direction_to_octahedral(Vector3d(directions.at(i).cast<double>()));
+    // Three roundings of numbers of at most 1; both are halved.
+    ASSERT_NEAR(u[i], truth.x(), 2e-7) << directions.at(i).transpose() << ", seed " << kSeed;
+    ASSERT_NEAR(v[i], truth.y(), 2e-7) << directions.at(i).transpose() << ", seed " << kSeed;
+  }
+}
+
 /// Calls on lengths 0..40, from unaligned starts: each element the same as in one long call, and
 /// what surrounds the results untouched.
 TEST_P(Batch, AnyLengthAndAlignmentGivesTheSame) {
@@ -242,6 +379,7 @@ TEST_P(Batch, AnyLengthAndAlignmentGivesTheSame) {
   }
   const AnisotropicGaussian<float> asg = {{}, 5, 2, 1};
   const SphericalGaussian<float> sg;
+  const LobeMoments<float> moments = asg_moments(5.0f, 2.0f);
   using Span = std::span<const float>;
   using Call = std::function<void(Span, Span, Span, std::span<float>)>;
   const std::vector<std::pair<const char*, Call>> calls = {
@@ -262,6 +400,33 @@ TEST_P(Batch, AnyLengthAndAlignmentGivesTheSame) {
        [](Span x, Span, Span z, auto out) { batch::visible_fraction_directional(x, z, out); }},
       {"hemisphere",
        [](Span x, Span, Span z, auto out) { batch::visible_fraction_hemisphere(x, z, out); }},
+      {"exact hemisphere",
+       [](Span x, Span, Span z, auto out) {
+         batch::visible_fraction_hemisphere(x, z, out, HemisphereLevel::exact);
+       }},
+      {"SG integral", [](Span x, Span, Span, auto out) { batch::sg_integral(x, out); }},
+      {"SG inner product",
+       [&](Span x, Span y, Span z, auto out) {
+         batch::inner_product(sg, {{x, y, z}, x, y}, out);
+       }},
+      {"pairs",
+       [&](Span x, Span y, Span z, auto out) {
+         batch::eval({{x, y, z}, {y, x, z}, x, y, y}, {x, y, z}, out);
+       }},
+      {"clamped cosine",
+       [&](Span x, Span y, Span z, auto out) {
+         batch::mean_clamped_cosine(moments, Frame<float>(), {x, y, z}, out);
+       }},
+      {"octahedral u",
+       [&](Span x, Span y, Span z, auto out) {
+         std::vector<float> v(out.size());
+         batch::direction_to_octahedral({x, y, z}, out, v);
+       }},
+      {"octahedral v",
+       [&](Span x, Span y, Span z, auto out) {
+         std::vector<float> u(out.size());
+         batch::direction_to_octahedral({x, y, z}, u, out);
+       }},
   };
   for (const auto& [name, call] : calls) {
     call(a, b, c, whole);
@@ -300,6 +465,13 @@ TEST_P(Batch, NaNAndInfinityDoNotHang) {
     batch::asg_integral(x, x, AsgIntegral::exact, results);
     batch::visible_fraction_directional(x, x, results);
     batch::visible_fraction_hemisphere(x, x, results);
+    batch::visible_fraction_hemisphere(x, x, results, HemisphereLevel::exact);
+    batch::sg_integral(x, results);
+    batch::inner_product(SphericalGaussian<float>(), {{x, x, x}, x, x}, results);
+    batch::eval({{x, x, x}, {x, x, x}, x, x, x}, {x, x, x}, results);
+    batch::mean_clamped_cosine(LobeMoments<float>(), Frame<float>(), {x, x, x}, results);
+    std::vector<float> more(20);
+    batch::direction_to_octahedral({x, x, x}, results, more);
   }
 }
 

@@ -7,6 +7,8 @@
 #include "burnish/sphere/anisotropic_gaussian.h"
 #include "burnish/sphere/asg_integral.h"
 #include "burnish/sphere/half_space.h"
+#include "burnish/sphere/lobe_moments.h"
+#include "burnish/sphere/octahedral_map.h"
 #include "burnish/sphere/spherical_gaussian.h"
 
 /// The operators of burnish/sphere/ over many lobes or directions at once, in float, by the widest
@@ -22,6 +24,16 @@ namespace burnish::batch {
 /// Unit directions, as a structure of arrays.
 struct Directions {
   std::span<const float> x, y, z;
+};
+
+/// Lobes, as structures of arrays. A frame's y is z x x.
+struct SphericalGaussians {
+  Directions axis;
+  std::span<const float> sharpness, amplitude;
+};
+struct AnisotropicGaussians {
+  Directions x, z;
+  std::span<const float> bandwidth_x, bandwidth_y, amplitude;
 };
 
 /// results[i] = exp(x[i]) for x <= 88: 2e-7 relative.
@@ -40,17 +52,39 @@ void eval(std::span<const SphericalGaussian<float>> lobes, const Directions& dir
 void eval(std::span<const AnisotropicGaussian<float>> lobes, const Directions& directions,
           std::span<float> results) noexcept;
 
-/// Integrals of unit-amplitude ASGs: 2e-6 relative, the exact level; the error of the level
-/// otherwise.
+/// Many lobes, each at a direction of its own: `results[i]` of lobe i at direction i.
+void eval(const AnisotropicGaussians& lobes, const Directions& directions,
+          std::span<float> results) noexcept;
+
+/// Integrals of unit-amplitude SGs: 1e-6 relative.
+void sg_integral(std::span<const float> sharpness, std::span<float> results) noexcept;
+
+/// Integrals of unit-amplitude ASGs by the exact level, 1e-6 relative, or, if that is asked for, by
+/// the fast one. (The series level is no faster than the exact one and stands for it.)
 void asg_integral(std::span<const float> bandwidths_x, std::span<const float> bandwidths_y,
                   AsgIntegral level, std::span<float> results) noexcept;
 
-/// Visible fractions, absolute error 1e-6; hidden tails above 1e-35 relative 1e-5.
+/// Integral of the product of one lobe with each of many. Relative error 1e-6 (1 + e), where e is
+/// the exponent's magnitude.
+void inner_product(const SphericalGaussian<float>& lobe, const SphericalGaussians& others,
+                   std::span<float> results) noexcept;
+
+/// Visible fractions, absolute error 1e-6; hidden tails above 1e-35 relative 5e-5.
 void visible_fraction_directional(std::span<const float> bandwidths_across,
                                   std::span<const float> distances,
                                   std::span<float> results) noexcept;
 void visible_fraction_hemisphere(std::span<const float> sharpness, std::span<const float> distances,
-                                 std::span<float> results) noexcept;
+                                 std::span<float> results,
+                                 HemisphereLevel level = HemisphereLevel::fast) noexcept;
+
+/// Mean of max(n . v, 0) over one lobe, for the normals of many surfaces; `frame` is the lobe's.
+/// Absolute error 2e-6.
+void mean_clamped_cosine(const LobeMoments<float>& moments, const Frame<float>& frame,
+                         const Directions& normals, std::span<float> results) noexcept;
+
+/// Points of the unit square, to 2e-7.
+void direction_to_octahedral(const Directions& directions, std::span<float> u,
+                             std::span<float> v) noexcept;
 
 /// The instruction sets that are compiled in and that this processor has, the best first.
 std::vector<std::string_view> instruction_sets();
