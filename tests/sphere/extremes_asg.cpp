@@ -1,0 +1,184 @@
+// Anisotropic spherical Gaussians and their warp at extreme inputs.
+
+#include "burnish/sphere/asg_convolution.h"
+#include "burnish/sphere/asg_product.h"
+#include "burnish/sphere/asg_sampling.h"
+#include "burnish/sphere/lobe_moments.h"
+#include "burnish/sphere/spherical_warp.h"
+#include "sphere/extremes.h"
+
+namespace burnish::test {
+namespace {
+
+struct AsgEval : ToAmplitude {
+  static constexpr Claims kClaims = {"ASG: eval", kRatio | kAngle | kAmplitude, kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {eval(asg(x), x.direction)};
+  }
+};
+
+template <AsgIntegral level>
+struct AsgIntegralAt : Relative {
+  static constexpr const char* kNames[] = {"ASG: integral, fast", "ASG: integral, series",
+                                           "ASG: integral, exact"};
+  // The series subtracts its correction, which is up to .58 of the leading term.
+  static constexpr Claims kClaims = {kNames[static_cast<int>(level)], kRatio | kAmplitude,
+                                     2 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {integral(asg(x), level)};
+  }
+};
+
+template <SmoothTerms smooth>
+struct AsgProductAmplitude : ToAmplitude {
+  static constexpr const char* kNames[] = {"ASG: product, amplitude",
+                                           "ASG: product (expanded), amplitude"};
+  static constexpr Claims kClaims = {kNames[static_cast<int>(smooth)], kRatio | kOther | kAngle,
+                                     kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {product(asg(x), other_asg(x), smooth).amplitude};
+  }
+};
+
+struct AsgProductBandwidths {
+  static double scale(const Extreme<double>& x) { return x.narrow + x.other_narrow; }
+  static constexpr Claims kClaims = {"ASG: product, bandwidths", kRatio | kOther | kAngle,
+                                     kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const auto c = product(asg(x), other_asg(x));
+    return {c.bandwidth_x, c.bandwidth_y};
+  }
+};
+
+/// Widths that add up to more than a float can be are held at its end, and nothing is claimed.
+bool beyond_float(const Extreme<double>& x) {
+  return x.narrow + x.other_narrow > std::numeric_limits<float>::max();
+}
+struct RelativeWithinFloat {
+  static double scale(const Extreme<double>& x) { return beyond_float(x) ? kInfinity : 0; }
+};
+
+template <bool closed_form>
+struct AsgInnerProduct {
+  // Of two lobes about one axis.
+  static double scale(const Extreme<double>& x) {
+    if (beyond_float(x)) return kInfinity;
+    return std::abs(x.amplitude) *
+           asg_integral_exact(x.narrow + x.other_narrow, x.wide + x.other_wide);
+  }
+  static constexpr Claims kClaims = {
+      closed_form ? "ASG: inner product, closed form" : "ASG: inner product",
+      kRatio | kOther | kAngle, 2 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {closed_form ? inner_product_closed_form(asg(x), other_asg(x))
+                        : inner_product(asg(x), other_asg(x))};
+  }
+};
+
+struct AsgSgConvolution : RelativeWithinFloat {
+  static constexpr Claims kClaims = {"ASG: convolution with an SG", kRatio | kOther,
+                                     2 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const auto c = convolve(asg(x), other_sg(x));
+    return {c.bandwidth_x, c.bandwidth_y, c.amplitude};
+  }
+};
+
+struct AsgAsgConvolution : RelativeWithinFloat {
+  static constexpr Claims kClaims = {"ASG: convolution with an ASG", kRatio | kOther | kAngle,
+                                     2 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const auto c = convolve(asg(x), other_asg(x));
+    return {c.bandwidth_x, c.bandwidth_y, c.amplitude};
+  }
+};
+
+struct AsgPdf {
+  static double scale(const Extreme<double>& x) { return 1 / asg_integral_exact(x.narrow, x.wide); }
+  static constexpr Claims kClaims = {"ASG: pdf", kRatio | kAngle, 2 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {pdf(asg(x), x.direction)};
+  }
+};
+
+struct AsgSample : ToOne {
+  static constexpr Claims kClaims = {"ASG: sample", kRatio, 2 * kFewRoundings, false};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    std::vector<T> all;
+    for (const T u : {T(0), T(0.25), T(0.75), T(1)}) {
+      const Vector3<T> v = sample(asg(x), u, T(0.15));
+      all.insert(all.end(), {v.x(), v.y(), v.z()});
+    }
+    return all;
+  }
+};
+
+struct AsgSupportAngles : Relative {
+  static constexpr Claims kClaims = {"ASG: support", kRatio, 2 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const auto tenth = support(asg(x), T(0.1)), far = support(asg(x), T(1e-6));
+    return {tenth.angle_x, tenth.angle_y, far.angle_x, far.angle_y};
+  }
+};
+
+struct AsgClampedCosine : ToOne {
+  static constexpr Claims kClaims = {"ASG: clamped cosine", kRatio | kAngle, 2 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {mean_clamped_cosine(asg_moments(x.narrow, x.wide), x.direction)};
+  }
+};
+
+struct WarpBandwidths : Relative {
+  // The view's float components, squared and divided by a cosine that is held above .01.
+  static constexpr Claims kClaims = {"warp: bandwidths", kRatio | kAngle, 4 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const auto warped = warp_to_incoming(asg(x), x.direction);
+    return {warped.lobe.bandwidth_x, warped.lobe.bandwidth_y, warped.jacobian};
+  }
+};
+
+struct WarpAmplitude : Relative {
+  static constexpr Claims kClaims = {"warp: amplitude", kRatio | kAngle | kAmplitude,
+                                     kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {warp_to_incoming(asg(x), x.direction).lobe.amplitude};
+  }
+};
+
+struct WarpMean {
+  // Far behind the horizon, where the amplitude vanishes, widths hang on a difference of tails.
+  static double scale(const Extreme<double>& x) { return x.narrow; }
+  static constexpr Claims kClaims = {"warp, mean form: bandwidths", kRatio | kAngle, 1e-3};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const auto warped =
+        warp_mean_to_incoming(asg(x), make_lobe_shape(x.narrow, x.wide), x.direction);
+    return {warped.lobe.bandwidth_x, warped.lobe.bandwidth_y};
+  }
+};
+
+}  // namespace
+
+std::vector<Row> asg_rows() {
+  return examine_all<AsgEval, AsgIntegralAt<AsgIntegral::fast>, AsgIntegralAt<AsgIntegral::series>,
+                     AsgIntegralAt<AsgIntegral::exact>, AsgProductAmplitude<SmoothTerms::constant>,
+                     AsgProductAmplitude<SmoothTerms::expanded>, AsgProductBandwidths,
+                     AsgInnerProduct<false>, AsgInnerProduct<true>, AsgSgConvolution,
+                     AsgAsgConvolution, AsgPdf, AsgSample, AsgSupportAngles, AsgClampedCosine,
+                     WarpBandwidths, WarpAmplitude, WarpMean>();
+}
+
+}  // namespace burnish::test

@@ -1,0 +1,86 @@
+// Every operator of the sphere at the product of extreme inputs, in float and in double. The test
+// prints its table; docs/sphere-extremes.md keeps it (BURNISH_UPDATE=1 writes it anew).
+
+#include "sphere/extremes.h"
+
+#include <cstdlib>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+
+#include <gtest/gtest.h>
+
+namespace burnish {
+namespace {
+
+using test::Claims;
+using test::Row;
+
+std::vector<Row> all_rows() {
+  std::vector<Row> rows;
+  for (const auto& family :
+       {test::sg_rows(), test::asg_rows(), test::visibility_rows(), test::direction_rows()})
+    rows.insert(rows.end(), family.begin(), family.end());
+  return rows;
+}
+
+/// "| name | bound |", the part of a row that does not depend on the compiler.
+std::string row_start(const Claims& claims) {
+  std::ostringstream text;
+  text.precision(2);
+  text << "| " << claims.name << " | " << claims.float_bound << " | ";
+  return text.str();
+}
+
+std::string page(const std::vector<Row>& rows) {
+  std::ostringstream text;
+  text.precision(2);
+  text
+      << "# The sphere's operators at extreme inputs\n\n"
+         "Written by the test `SphereExtremes.*` with `BURNISH_UPDATE=1`. Inputs are all "
+         "combinations "
+         "of a width (sharpness or larger\nbandwidth) in {0, least denormal, 1e-8, 1e-3, 1, 1e3, "
+         "1e8, "
+         "largest finite}, a ratio of bandwidths in {1, 1 + ε, 10,\n1e6}, the same of a second "
+         "lobe, an "
+         "angle in {0, ε, 1e-4, π/2 ± ε, π − ε, π}, an azimuth in {0, 0.7, π/2} and an\namplitude "
+         "in {0, "
+         "least denormal, 1, 1e30, −2}, as far as the operator has them. Every result is finite in "
+         "float and in\ndouble, not negative where the quantity is not, and monotone in the angle "
+         "where "
+         "the quantity is. The difference is\n|float − double| at equal inputs, over |double| or, "
+         "where a "
+         "result may be small, over what it is a part of\n(tests/sphere/extremes_test.cpp says "
+         "which). "
+         "Where: narrow/wide bandwidth of the lobe, of the second lobe, and the rest.\n\n"
+         "| operator | bound | worst difference | cases | where |\n|---|---|---|---|---|\n";
+  for (const Row& row : rows)
+    text << row_start(row.claims) << row.findings.worst << " | " << row.findings.cases << " | "
+         << row.findings.where << " |\n";
+  return text.str();
+}
+
+const std::string kPage = std::string(BURNISH_SOURCE_DIR) + "/docs/sphere-extremes.md";
+
+TEST(SphereExtremes, EveryOperatorIsSoundAndFloatAgreesWithDouble) {
+  const std::vector<Row> rows = all_rows();
+  for (const Row& row : rows) {
+    EXPECT_EQ(row.findings.first_fault, "") << row.claims.name;
+    EXPECT_LE(row.findings.worst, row.claims.float_bound)
+        << row.claims.name << " at " << row.findings.where;
+    EXPECT_GE(row.findings.cases, 16u) << row.claims.name;  // eight widths, twice
+  }
+  std::cout << page(rows);
+  if (std::getenv("BURNISH_UPDATE")) std::ofstream(kPage) << page(rows);
+}
+
+TEST(SphereExtremes, PageHasEveryOperatorAndItsBound) {
+  std::ifstream in(kPage);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  for (const Row& row : all_rows())
+    EXPECT_NE(text.find(row_start(row.claims)), std::string::npos)
+        << row.claims.name << " is not in " << kPage << ": run with BURNISH_UPDATE=1";
+}
+
+}  // namespace
+}  // namespace burnish
