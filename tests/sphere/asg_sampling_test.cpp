@@ -92,7 +92,7 @@ TYPED_TEST(AsgSampling, FollowsTheLobe) {
     std::vector<double> observed(kBins * kBins, 0.0);
     for (int i = 0; i < samples; ++i) {
       const T u = uniform(random);
-      const Vector3<T> v = sample(lobe, Vector2<T>(u, uniform(random)));
+      const Vector3<T> v = sample(lobe, u, uniform(random));
       ++observed[bin(y_edges, v.y()) * kBins + bin(x_edges, v.x())];
     }
     std::vector<double> expected = expected_shares(shape.bandwidth_x, shape.bandwidth_y);
@@ -116,7 +116,7 @@ TYPED_TEST(AsgSampling, InvertsTheAzimuthsDistribution) {
     const double whole = asg_integral_exact(shape.bandwidth_x, shape.bandwidth_y);
     double from = 0;
     for (int i = 1; i <= 16; ++i) {
-      const Vector3<T> v = sample(lobe, Vector2<T>(T(i) / 16, T(0.5)));
+      const Vector3<T> v = sample(lobe, T(T(i) / 16), T(0.5));
       double to = std::atan2(double(v.y()), double(v.x()));
       if (to < from - 1e-3) to += 2 * kPi<double>;
       double share = 0;
@@ -149,7 +149,7 @@ TYPED_TEST(AsgSampling, AnyNumbersGiveUnitDirectionsWhereTheLobeIs) {
       EXPECT_TRUE(std::isfinite(peak) && peak >= 1 / (kPi<T> * (1 + 8 * eps))) << bx << " " << by;
       for (const T u : numbers) {
         for (const T v : numbers) {
-          const Vector3<T> direction = sample(lobe, Vector2<T>(u, v));
+          const Vector3<T> direction = sample(lobe, T(u), T(v));
           // The frame's own rounding and three products.
           EXPECT_NEAR(direction.norm(), 1, 16 * eps) << bx << " " << by << " " << u << " " << v;
           EXPECT_GE(direction.dot(frame.z), -8 * eps) << bx << " " << by << " " << u << " " << v;
@@ -185,8 +185,8 @@ TYPED_TEST(AsgSampling, IsContinuousInItsNumbers) {
     lobe.bandwidth_y = T(shape.bandwidth_y);
     for (const T seam : {T(0), T(0.25), T(0.5), T(0.75)}) {
       const T before = seam == 0 ? T(1) - T(1e-4) : seam - T(1e-4);
-      const Vector3<T> a = sample(lobe, Vector2<T>(before, T(0.9)));
-      const Vector3<T> b = sample(lobe, Vector2<T>(seam, T(0.9)));
+      const Vector3<T> a = sample(lobe, before, T(0.9));
+      const Vector3<T> b = sample(lobe, seam, T(0.9));
       EXPECT_LT((a - b).norm(), 2e-3) << shape.bandwidth_x << " " << shape.bandwidth_y;
     }
   }

@@ -51,21 +51,21 @@ T sample_asg_azimuth(T large, T small, T squeeze, T offset, T u) {
 
 }  // namespace internal
 
-/// A direction distributed as the lobe, from two uniform numbers in [0, 1); 1 counts as its
-/// neighbour. Continuous and one to one in both: u.x is the azimuth, round the axis from the
-/// direction of the larger bandwidth, u.y the distance from the axis. Density: `pdf`.
+/// A direction distributed as the lobe, from u and v uniform in [0, 1); 1 counts as its neighbour.
+/// Continuous and one to one in both: u is the azimuth, round the axis from the direction of the
+/// larger bandwidth, v the distance from the axis. Density: pdf(lobe, direction).
 ///
 /// The radius given the azimuth inverts in closed form. The azimuth psi is uniform where the disc's
 /// edge is out of sight; else its density is the g of asg_integral.h, inverted numerically.
 template <class T>
-Vector3<T> sample(const AnisotropicGaussian<T>& lobe, const Vector2<T>& u) {
+Vector3<T> sample(const AnisotropicGaussian<T>& lobe, T u, T v) {
   constexpr T kEdgeOutOfSight = std::is_same_v<T, float> ? T(17) : T(37);
   const bool x_is_narrow = lobe.bandwidth_x >= lobe.bandwidth_y;
   const T large = x_is_narrow ? lobe.bandwidth_x : lobe.bandwidth_y;
   const T small = x_is_narrow ? lobe.bandwidth_y : lobe.bandwidth_x;
   constexpr T kBelowOne = 1 - std::numeric_limits<T>::epsilon() / 2;
-  const T u_azimuth = std::clamp(u.x(), T(0), kBelowOne);
-  const T u_radius = std::clamp(u.y(), T(0), kBelowOne);
+  const T u_azimuth = std::clamp(u, T(0), kBelowOne);
+  const T u_radius = std::clamp(v, T(0), kBelowOne);
 
   // Quarter turns; the second and fourth run backward, so that the azimuth is continuous.
   const int quarter = static_cast<int>(4 * u_azimuth);
