@@ -122,6 +122,29 @@ struct AsgSample : ToOne {
   }
 };
 
+/// Lengths of the axes, and what z differs by from x cross y. The axes themselves hang on the
+/// rounding where bandwidths are equal.
+template <class T>
+std::vector<T> frame_lengths(const Frame<T>& frame) {
+  return {frame.x.norm(), frame.y.norm(), frame.z.norm(), frame.x.cross(frame.y).dot(frame.z)};
+}
+
+struct ResultFrames : ToOne {
+  static constexpr Claims kClaims = {"frames of products, convolutions, warps",
+                                     kRatio | kOther | kAngle, kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    std::vector<T> all;
+    for (const Frame<T>& frame :
+         {product(asg(x), other_asg(x)).frame, convolve(asg(x), other_asg(x)).frame,
+          warp_to_incoming(asg(x), x.direction).lobe.frame}) {
+      const std::vector<T> lengths = frame_lengths(frame);
+      all.insert(all.end(), lengths.begin(), lengths.end());
+    }
+    return all;
+  }
+};
+
 struct AsgSupportAngles : Relative {
   static constexpr Claims kClaims = {"ASG: support", kRatio, 2 * kFewRoundings};
   template <class T>
@@ -177,8 +200,8 @@ std::vector<Row> asg_rows() {
                      AsgIntegralAt<AsgIntegral::exact>, AsgProductAmplitude<SmoothTerms::constant>,
                      AsgProductAmplitude<SmoothTerms::expanded>, AsgProductBandwidths,
                      AsgInnerProduct<false>, AsgInnerProduct<true>, AsgSgConvolution,
-                     AsgAsgConvolution, AsgPdf, AsgSample, AsgSupportAngles, AsgClampedCosine,
-                     WarpBandwidths, WarpAmplitude, WarpMean>();
+                     AsgAsgConvolution, ResultFrames, AsgPdf, AsgSample, AsgSupportAngles,
+                     AsgClampedCosine, WarpBandwidths, WarpAmplitude, WarpMean>();
 }
 
 }  // namespace burnish::test

@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include "burnish/sphere/circular_gaussian.h"
+
 namespace burnish {
 namespace {
 
@@ -72,6 +74,35 @@ TEST(SphereExtremes, EveryOperatorIsSoundAndFloatAgreesWithDouble) {
   }
   std::cout << page(rows);
   if (std::getenv("BURNISH_UPDATE")) std::ofstream(kPage) << page(rows);
+}
+
+template <class T>
+class SphereExtremesOf : public testing::Test {};
+using Scalars = testing::Types<float, double>;
+TYPED_TEST_SUITE(SphereExtremesOf, Scalars);
+
+TYPED_TEST(SphereExtremesOf, WidthsOrderIntegralsMeansAndSupports) {
+  using T = TypeParam;
+  const T infinity = std::numeric_limits<T>::infinity();
+  T integral_before = infinity, round_before = infinity, circle_before = infinity, mean_before = 0,
+    support_before = infinity;
+  for (const test::Extreme<T>& x : test::all_extremes<T>(0)) {  // rising widths
+    // Two results in their last place may change order.
+    const T up = 1 + 4 * std::numeric_limits<T>::epsilon();
+    const T whole = integral(test::asg(x)), round = integral(test::sg(x));
+    const T circle = integral(CircularGaussian<T>{0, x.narrow, 1});
+    const T mean = mean_cosine(x.narrow), angle = support(test::asg(x), T(0.1)).angle_x;
+    EXPECT_LE(whole, integral_before * up) << x.narrow;
+    EXPECT_LE(round, round_before * up) << x.narrow;
+    EXPECT_LE(circle, circle_before * up) << x.narrow;
+    EXPECT_GE(mean * up, mean_before) << x.narrow;
+    EXPECT_LE(angle, support_before * up) << x.narrow;
+    integral_before = whole;
+    round_before = round;
+    circle_before = circle;
+    mean_before = mean;
+    support_before = angle;
+  }
 }
 
 TEST(SphereExtremes, PageHasEveryOperatorAndItsBound) {

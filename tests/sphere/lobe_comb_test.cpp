@@ -186,8 +186,8 @@ double shading_error(double alpha_x, double alpha_y, double view, int count, uns
 }
 
 // The stated errors are means over 1000 scenes (docs/maths.md, "Lobe comb"). Those of 100 scenes
-// spread by a fifth about them, as ten other seeds showed, and by a quarter where the few
-// brightest scenes rule.
+// hang on the few brightest: over ten seeds other than this one they were .73 to 1.25 of the stated
+// error for one lobe, .54 to 1.53 for combs.
 TEST(LobeComb, ShadedHighlightKeepsItsStatedError) {
   const struct {
     double alpha_x, alpha_y, degrees;
@@ -204,8 +204,8 @@ TEST(LobeComb, ShadedHighlightKeepsItsStatedError) {
     };
     EXPECT_NEAR(error(0) / row.peak, 1, .35);
     EXPECT_LE(error(1), 1.35 * row.mean);
-    EXPECT_LE(error(3), 1.35 * row.comb3);
-    EXPECT_LE(error(5), 1.35 * row.comb5);
+    EXPECT_LE(error(3), 1.55 * row.comb3);
+    EXPECT_LE(error(5), 1.55 * row.comb5);
   }
 }
 
