@@ -324,5 +324,18 @@ TEST(Shade, IsFiniteAndNonNegativeForAdversarialInput) {
   }
 }
 
+TEST(PrepareLights, RefusesALobeOutsideItsDomainByItsNumber) {
+  LightRig rig;
+  rig.lobes.resize(2);
+  rig.lobes[1].lobe.bandwidth_y = -1;
+  try {
+    prepare_lights(rig, {});
+    FAIL() << "accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "light lobe 1: bandwidth_y is -1.000000, expected a finite number >= 0");
+  }
+}
+
 }  // namespace
 }  // namespace burnish

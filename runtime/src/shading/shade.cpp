@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
 
 #include "burnish/sphere/asg_product.h"
+#include "burnish/sphere/lobe_domain.h"
 #include "burnish/sphere/lobe_moments.h"
+#include "burnish/sphere/mean_resultant.h"
 #include "burnish/sphere/spherical_warp.h"
 #include "burnish/visibility/ssdf.h"
 
@@ -122,11 +126,8 @@ PreparedLobe lobe_from_sphere(const SphereLight& sphere, const Vector3f& positio
   // 1 - cos of the cap's edge, without its cancellation for small spheres.
   const float cos_edge = inside ? -1.0f : std::sqrt(std::max(1 - sine * sine, 0.0f));
   const float height = inside ? 2.0f : sine * sine / (1 + cos_edge);
-  // A zero mean cosine (inside) would be sharpness 0; the mean resultant length r gives it by r (3
-  // - r^2) / (1 - r^2), within 1 % of the exact inverse.
-  const float r = 1 - height / 2;
-  const float one_minus_r2 = height * (1 - height / 4);
-  const float sharpness = r * (3 - r * r) / std::max(one_minus_r2, 1e-12f);
+  // A zero mean cosine (inside) is sharpness 0.
+  const float sharpness = sharpness_from_mean(resultant_from_complement(height / 2));
   PreparedLobe prepared;
   prepared.lobe.frame =
       frame_from_axis(distance > 0 ? Vector3f(to_center / distance) : Vector3f::UnitZ());
@@ -181,7 +182,11 @@ PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options
   PreparedLights prepared;
   prepared.spheres = rig.spheres;
   prepared.lobes.reserve(rig.lobes.size());
-  for (const EnvironmentLobe& light : rig.lobes) {
+  for (size_t i = 0; i < rig.lobes.size(); ++i) {
+    const EnvironmentLobe& light = rig.lobes[i];
+    const std::string error = domain_error(light.lobe);
+    if (!error.empty())
+      throw std::invalid_argument("light lobe " + std::to_string(i) + ": " + error);
     PreparedLobe lobe;
     lobe.lobe = light.lobe;
     lobe.lobe.amplitude = 1;

@@ -43,6 +43,7 @@ struct PreparedLights {
   std::vector<SphereLight> spheres;
 };
 
+/// Throws std::invalid_argument for a lobe that domain_error (lobe_domain.h) objects to.
 PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options);
 
 /// What lights a frame, in the world's frame. Without an environment the specular term sees the
