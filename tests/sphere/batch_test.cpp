@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "burnish/sphere/asg_product.h"
 #include "support/quadrature.h"
 
 // Every test runs on each instruction set that this processor has.
@@ -280,6 +281,91 @@ TEST_P(Batch, SgInnerProductMatchesTheScalarForm) {
   }
 }
 
+TEST_P(Batch, AsgInnerProductMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  for (const auto& [bx, by] : {std::pair{0.0f, 0.0f},
+                               {1e-3f, 1e-8f},
+                               {10.0f, 1.0f},
+                               {300.0f, 3.0f},
+                               {1e8f, 1.0f},
+                               {kMax, 1.0f},
+                               {kMax, kMax}}) {
+    const Vector3d axis = test::random_direction(random);
+    const Frame<float> frame = test::random_frame(axis, random).cast<float>();
+    const AnisotropicGaussian<float> lobe = {frame, bx, by, 2};
+    DirectionArrays x, z;
+    std::vector<float> bandwidth_x, bandwidth_y, amplitude;
+    std::vector<AnisotropicGaussian<float>> others;
+    const DirectionArrays axes = directions_around(axis, 50, random);
+    for (size_t i = 0; i < axes.x.size(); ++i) {
+      const Frame<double> other =
+          test::random_frame(axes.at(i).cast<double>().normalized(), random);
+      x.add(other.x);
+      z.add(other.z);
+      bandwidth_x.push_back(i % 3 == 0 ? 0 : i % 3 == 1 ? 5 : 200);
+      bandwidth_y.push_back(i % 5 == 0 ? 1e-3f : 20);
+      amplitude.push_back(3);
+      others.push_back(
+          {{x.at(i), z.at(i).cross(x.at(i)), z.at(i)}, bandwidth_x[i], bandwidth_y[i], 3});
+    }
+    std::vector<float> results(others.size());
+    batch::inner_product(lobe, {x.spans(), z.spans(), bandwidth_x, bandwidth_y, amplitude},
+                         results);
+    for (size_t i = 0; i < others.size(); ++i) {
+      const auto in_double = [](const AnisotropicGaussian<float>& a) {
+        return AnisotropicGaussian<double>{a.frame.cast<double>(), a.bandwidth_x, a.bandwidth_y,
+                                           a.amplitude};
+      };
+      const double truth = inner_product_closed_form(in_double(lobe), in_double(others[i]));
+      // A dot product errs by 3e-7; the exponent is at most the smaller lobe's, its bandwidth 200.
+      // The smooth factor errs by as much, absolutely. The largest value is 6 pi.
+      const double relative = 1e-5 + 2 * 200 * 3e-7;
+      EXPECT_NEAR(results[i], truth, relative * truth + 6 * kPi<double> * 1e-6)
+          << bx << " " << by << " " << bandwidth_x[i] << " " << bandwidth_y[i] << ", seed "
+          << kSeed;
+      EXPECT_GE(results[i], 0);
+    }
+  }
+}
+
+TEST_P(Batch, DotMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  DirectionArrays directions;
+  for (int i = 0; i < 1000; ++i) directions.add(test::random_direction(random));
+  const Vector3f vector = test::random_direction(random).cast<float>();
+  std::vector<float> results(1000);
+  batch::dot(vector, directions.spans(), results);
+  for (size_t i = 0; i < 1000; ++i)
+    // Three roundings of at most half of 2^-23 each.
+    ASSERT_NEAR(results[i], vector.cast<double>().dot(directions.at(i).cast<double>()), 1.8e-7);
+}
+
+TEST_P(Batch, DirectionalBandwidthMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  std::vector<float> bx, by, gx, gy;
+  for (const float x : magnitudes(20, random)) {
+    for (const float y : magnitudes(5, random)) {
+      for (const auto& [u, v] :
+           {std::pair{0.0f, 0.0f}, {1.0f, 0.0f}, {0.0f, -3.0f}, {0.6f, 0.8f}, {1e-3f, 1.0f}}) {
+        bx.push_back(x);
+        by.push_back(y);
+        gx.push_back(u);
+        gy.push_back(v);
+      }
+    }
+  }
+  std::vector<float> results(bx.size());
+  batch::directional_bandwidth(bx, by, gx, gy, results);
+  for (size_t i = 0; i < bx.size(); ++i) {
+    const AnisotropicGaussian<double> lobe = {{}, bx[i], by[i], 1};
+    const double truth = directional_bandwidth(lobe, Vector3d(gx[i], gy[i], 0));
+    // A dozen roundings; the difference of two inverses near 1 rounds absolutely. Denormals and
+    // the ratio to the largest finite number have fewer digits.
+    ASSERT_NEAR(results[i], truth, 1.5e-6 * truth + 1e-7)
+        << bx[i] << " " << by[i] << " " << gx[i] << " " << gy[i] << ", seed " << kSeed;
+  }
+}
+
 TEST_P(Batch, LobesEachAtItsDirectionMatchTheScalarForm) {
   std::mt19937 random(kSeed);
   const std::vector<float> widths = magnitudes(500, random);
@@ -413,6 +499,16 @@ TEST_P(Batch, AnyLengthAndAlignmentGivesTheSame) {
        [&](Span x, Span y, Span z, auto out) {
          batch::eval({{x, y, z}, {y, x, z}, x, y, y}, {x, y, z}, out);
        }},
+      {"ASG inner product",
+       [&](Span x, Span y, Span z, auto out) {
+         batch::inner_product(asg, {{x, y, z}, {y, x, z}, x, y, y}, out);
+       }},
+      {"dot",
+       [&](Span x, Span y, Span z, auto out) {
+         batch::dot(Vector3f(1, 2, 3), {x, y, z}, out);
+       }},
+      {"directional bandwidth",
+       [&](Span x, Span y, Span z, auto out) { batch::directional_bandwidth(x, y, z, x, out); }},
       {"clamped cosine",
        [&](Span x, Span y, Span z, auto out) {
          batch::mean_clamped_cosine(moments, Frame<float>(), {x, y, z}, out);
@@ -469,6 +565,8 @@ TEST_P(Batch, NaNAndInfinityDoNotHang) {
     batch::sg_integral(x, results);
     batch::inner_product(SphericalGaussian<float>(), {{x, x, x}, x, x}, results);
     batch::eval({{x, x, x}, {x, x, x}, x, x, x}, {x, x, x}, results);
+    batch::inner_product(AnisotropicGaussian<float>(), {{x, x, x}, {x, x, x}, x, x, x}, results);
+    batch::directional_bandwidth(x, x, x, x, results);
     batch::mean_clamped_cosine(LobeMoments<float>(), Frame<float>(), {x, x, x}, results);
     std::vector<float> more(20);
     batch::direction_to_octahedral({x, x, x}, results, more);

@@ -11,6 +11,7 @@
 #include <hwy/highway.h>
 
 #include "sphere/for_each-inl.h"
+#include "sphere/half_space-inl.h"
 #include "sphere/lobes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -44,6 +45,15 @@ void directional_batch(size_t size, const float* bandwidths, const float* distan
       [](D d, V bandwidth, V distance)
           HWY_ATTR { return visible_fraction_directional(d, bandwidth, distance); },
       bandwidths, distances);
+}
+
+void directional_bandwidth_batch(size_t size, const float* bandwidths_x, const float* bandwidths_y,
+                                 const float* x, const float* y, float* results) {
+  for_each(
+      size, results,
+      [](D d, V bandwidth_x, V bandwidth_y, V x, V y)
+          HWY_ATTR { return directional_bandwidth(d, bandwidth_x, bandwidth_y, x, y); },
+      bandwidths_x, bandwidths_y, x, y);
 }
 
 void hemisphere_batch(size_t size, const float* sharpness, const float* distances, float* results) {
@@ -83,6 +93,7 @@ HWY_EXPORT(exp_batch);
 HWY_EXPORT(asg_integral_fast_batch);
 HWY_EXPORT(asg_integral_exact_batch);
 HWY_EXPORT(directional_batch);
+HWY_EXPORT(directional_bandwidth_batch);
 HWY_EXPORT(hemisphere_batch);
 HWY_EXPORT(hemisphere_exact_batch);
 HWY_EXPORT(sg_integral_batch);
@@ -109,6 +120,14 @@ void visible_fraction_directional(std::span<const float> bandwidths_across,
                                   std::span<float> results) noexcept {
   HWY_DYNAMIC_DISPATCH(directional_batch)
   (results.size(), bandwidths_across.data(), distances.data(), results.data());
+}
+
+void directional_bandwidth(std::span<const float> bandwidths_x, std::span<const float> bandwidths_y,
+                           std::span<const float> gradients_x, std::span<const float> gradients_y,
+                           std::span<float> results) noexcept {
+  HWY_DYNAMIC_DISPATCH(directional_bandwidth_batch)
+  (results.size(), bandwidths_x.data(), bandwidths_y.data(), gradients_x.data(), gradients_y.data(),
+   results.data());
 }
 
 void visible_fraction_hemisphere(std::span<const float> sharpness, std::span<const float> distances,

@@ -82,6 +82,38 @@ void sg_inner_product_batch(const float* axis, float sharpness, float amplitude,
       others.amplitude.data());
 }
 
+void asg_inner_product_batch(const float* frame, float bandwidth_x, float bandwidth_y,
+                             float amplitude, const batch::AnisotropicGaussians& others,
+                             size_t size, float* results) {
+  const D d;
+  const AnisotropicGaussian<V> a = {set(d, frame), set(d, frame + 3), set(d, frame + 6),
+                                    hn::Set(d, bandwidth_x), hn::Set(d, bandwidth_y)};
+  const V scale = hn::Set(d, amplitude);
+  for_each(
+      size, results,
+      [&](D d, V xx, V xy, V xz, V zx, V zy, V zz, V bandwidth_x, V bandwidth_y, V other_scale)
+          HWY_ATTR {
+            const Vector3<V> x = {xx, xy, xz}, z = {zx, zy, zz};
+            const AnisotropicGaussian<V> b = {x, cross(z, x), z, bandwidth_x, bandwidth_y};
+            return hn::Mul(scale, hn::Mul(other_scale, asg_inner_product(d, a, b)));
+          },
+      others.x.x.data(), others.x.y.data(), others.x.z.data(), others.z.x.data(), others.z.y.data(),
+      others.z.z.data(), others.bandwidth_x.data(), others.bandwidth_y.data(),
+      others.amplitude.data());
+}
+
+void dot_batch(const float* vector, size_t size, const float* x, const float* y, const float* z,
+               float* results) {
+  const D d;
+  const Vector3<V> w = set(d, vector);
+  for_each(
+      size, results,
+      [&](D, V x, V y, V z) HWY_ATTR {
+        return dot(w, Vector3<V>{x, y, z});
+      },
+      x, y, z);
+}
+
 /// frame: as of asg_eval_batch, not scaled.
 void mean_clamped_cosine_batch(const burnish::LobeMoments<float>& moments, const float* frame,
                                size_t size, const float* x, const float* y, const float* z,
@@ -125,10 +157,27 @@ HWY_EXPORT(sg_eval_batch);
 HWY_EXPORT(asg_eval_batch);
 HWY_EXPORT(asg_eval_pairs_batch);
 HWY_EXPORT(sg_inner_product_batch);
+HWY_EXPORT(asg_inner_product_batch);
+HWY_EXPORT(dot_batch);
 HWY_EXPORT(mean_clamped_cosine_batch);
 HWY_EXPORT(octahedral_batch);
 
 namespace batch {
+namespace {
+
+/// x, y and z of a frame, one after another.
+struct FrameArray {
+  explicit FrameArray(const Frame<float>& frame, float scale_x = 1, float scale_y = 1) {
+    for (int i = 0; i < 3; ++i) {
+      axes[i] = scale_x * frame.x[i];
+      axes[3 + i] = scale_y * frame.y[i];
+      axes[6 + i] = frame.z[i];
+    }
+  }
+  float axes[9];
+};
+
+}  // namespace
 
 void eval(const SphericalGaussian<float>& lobe, const Directions& directions,
           std::span<float> results) noexcept {
@@ -139,15 +188,9 @@ void eval(const SphericalGaussian<float>& lobe, const Directions& directions,
 
 void eval(const AnisotropicGaussian<float>& lobe, const Directions& directions,
           std::span<float> results) noexcept {
-  float frame[9];
-  const float root_x = std::sqrt(lobe.bandwidth_x), root_y = std::sqrt(lobe.bandwidth_y);
-  for (int i = 0; i < 3; ++i) {
-    frame[i] = root_x * lobe.frame.x[i];
-    frame[3 + i] = root_y * lobe.frame.y[i];
-    frame[6 + i] = lobe.frame.z[i];
-  }
+  const FrameArray frame(lobe.frame, std::sqrt(lobe.bandwidth_x), std::sqrt(lobe.bandwidth_y));
   HWY_DYNAMIC_DISPATCH(asg_eval_batch)
-  (frame, lobe.amplitude, results.size(), directions.x.data(), directions.y.data(),
+  (frame.axes, lobe.amplitude, results.size(), directions.x.data(), directions.y.data(),
    directions.z.data(), results.data());
 }
 
@@ -192,17 +235,24 @@ void inner_product(const SphericalGaussian<float>& lobe, const SphericalGaussian
   (lobe.axis.data(), lobe.sharpness, lobe.amplitude, others, results.size(), results.data());
 }
 
+void inner_product(const AnisotropicGaussian<float>& lobe, const AnisotropicGaussians& others,
+                   std::span<float> results) noexcept {
+  HWY_DYNAMIC_DISPATCH(asg_inner_product_batch)
+  (FrameArray(lobe.frame).axes, lobe.bandwidth_x, lobe.bandwidth_y, lobe.amplitude, others,
+   results.size(), results.data());
+}
+
+void dot(const Vector3f& vector, const Directions& directions, std::span<float> results) noexcept {
+  HWY_DYNAMIC_DISPATCH(dot_batch)
+  (vector.data(), results.size(), directions.x.data(), directions.y.data(), directions.z.data(),
+   results.data());
+}
+
 void mean_clamped_cosine(const LobeMoments<float>& moments, const Frame<float>& frame,
                          const Directions& normals, std::span<float> results) noexcept {
-  float axes[9];
-  for (int i = 0; i < 3; ++i) {
-    axes[i] = frame.x[i];
-    axes[3 + i] = frame.y[i];
-    axes[6 + i] = frame.z[i];
-  }
   HWY_DYNAMIC_DISPATCH(mean_clamped_cosine_batch)
-  (moments, axes, results.size(), normals.x.data(), normals.y.data(), normals.z.data(),
-   results.data());
+  (moments, FrameArray(frame).axes, results.size(), normals.x.data(), normals.y.data(),
+   normals.z.data(), results.data());
 }
 
 void direction_to_octahedral(const Directions& directions, std::span<float> u,

@@ -69,6 +69,14 @@ void asg_integral(std::span<const float> bandwidths_x, std::span<const float> ba
 void inner_product(const SphericalGaussian<float>& lobe, const SphericalGaussians& others,
                    std::span<float> results) noexcept;
 
+/// inner_product_closed_form of one lobe with each of many. Relative error 1e-5 (1 + e), and that
+/// of the dot products: b * 2e-7 in an exponent of bandwidth b.
+void inner_product(const AnisotropicGaussian<float>& lobe, const AnisotropicGaussians& others,
+                   std::span<float> results) noexcept;
+
+/// results[i] = vector . direction i, to 2e-7.
+void dot(const Vector3f& vector, const Directions& directions, std::span<float> results) noexcept;
+
 /// Visible fractions, absolute error 1e-6; hidden tails above 1e-35 relative 5e-5.
 void visible_fraction_directional(std::span<const float> bandwidths_across,
                                   std::span<const float> distances,
@@ -76,6 +84,12 @@ void visible_fraction_directional(std::span<const float> bandwidths_across,
 void visible_fraction_hemisphere(std::span<const float> sharpness, std::span<const float> distances,
                                  std::span<float> results,
                                  HemisphereLevel level = HemisphereLevel::fast) noexcept;
+
+/// For gradients in their lobe's frame (the SSDF's gradient's components along x and y): 1e-6
+/// relative.
+void directional_bandwidth(std::span<const float> bandwidths_x, std::span<const float> bandwidths_y,
+                           std::span<const float> gradients_x, std::span<const float> gradients_y,
+                           std::span<float> results) noexcept;
 
 /// Mean of max(n . v, 0) over one lobe, for the normals of many surfaces; `frame` is the lobe's.
 /// Absolute error 2e-6.

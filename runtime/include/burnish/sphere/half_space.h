@@ -230,15 +230,16 @@ T bandwidth_across(const AnisotropicGaussian<T>& lobe, const Vector3<T>& gradien
 }
 
 /// The bandwidth that makes visible_fraction_directional of an ASG's half-space most accurate:
-/// bandwidth_across, corrected for what it neglects. Over lobes of sqrt(b_x b_y) in .1..300, b_x /
-/// b_y in 1..1000, the fraction's error is then .004 (mean), .04 (worst); without, .008 and .18.
+/// bandwidth_across, corrected for what it neglects. Over random lobes (sqrt(b_x b_y) .01..300, b_x
+/// / b_y 1..1000) the fraction then errs by .003 (mean) and .035 (worst); without, by .006 and .17.
 template <class T>
 T directional_bandwidth(const AnisotropicGaussian<T>& lobe, const Vector3<T>& gradient) {
-  // The disc's edge holds a long axis that reaches it shorter than its bandwidth says (fitted).
+  // The disc's edge makes a long axis that reaches it shorter than its bandwidth says (fitted).
   AnisotropicGaussian<T> held = lobe;
-  T& small = lobe.bandwidth_x < lobe.bandwidth_y ? held.bandwidth_x : held.bandwidth_y;
-  const T large = std::max(lobe.bandwidth_x, lobe.bandwidth_y);
-  if (large > 0) small += (1 - small / large) / (T(1.5) * (1 + small));
+  const bool x_is_wide = lobe.bandwidth_x < lobe.bandwidth_y;
+  const T large = x_is_wide ? lobe.bandwidth_y : lobe.bandwidth_x;
+  T& small = x_is_wide ? held.bandwidth_x : held.bandwidth_y;
+  small += T(2) / 3 * (1 / (1 + small) - 1 / (1 + large));
   // A great circle is half an ellipse in the orthographic plane, not a line: where the lobe extends
   // along it by w, it is nearer by sqrt(1 - w^2). The mean of w^2 is about 1 / (2 b + 5 / 2).
   const T along = bandwidth_across(held, Vector3<T>(lobe.frame.z.cross(gradient)));
