@@ -3,11 +3,14 @@
 #include "bench/bench.h"
 
 #include <algorithm>
+#include <map>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "bench/sphere_truth.h"
 #include "sample_files.h"
+#include "support/csv.h"
 
 namespace burnish::tools {
 namespace {
@@ -97,6 +100,47 @@ TEST_P(BenchProgram, WritesTheSameFiguresAsTableJsonAndCsv) {
 
 INSTANTIATE_TEST_SUITE_P(Stations, BenchProgram, testing::Values("bake", "shade"),
                          [](const auto& station) { return std::string(station.param); });
+
+TEST(BenchProgram, SphereTellsErrorAndTimeOfEveryLevelInBothForms) {
+  const test::ScratchFolder folder;
+  const test::RunResult result =
+      test::burnish_bench({"sphere", "--repeat", "1", "--run-ms", "1", "--json",
+                           folder.file("b.json"), "--csv", folder.file("b.csv")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  const json rows = json::parse(test::read_whole_file(folder.file("b.json")))["rows"];
+  std::map<std::string, json> by_name;
+  for (const json& row : rows) {
+    EXPECT_GT(row["ns"].get<double>(), 0) << row;
+    const auto text = [&](const char* key) { return row[key].get<std::string>(); };
+    const std::string name = text("operator") + "/" + text("level") + "/" + text("form");
+    EXPECT_TRUE(by_name.emplace(name, row).second) << name << " twice";
+  }
+  // The errors that the headers state for these levels, over a domain that holds the station's.
+  const std::pair<const char*, double> stated[] = {{"ASG integral/exact/scalar", 1e-6},
+                                                   {"ASG integral/exact/batch", 2e-6},
+                                                   {"ASG integral/4 midpoints/scalar", 7.2e-5},
+                                                   {"SG in a half-space/fast/scalar", 5e-4},
+                                                   {"SG in a half-space/fast/batch", 5e-4},
+                                                   {"SG in a half-space/exact/scalar", 1e-6},
+                                                   {"ASG in a half-space/directional/scalar", .04}};
+  for (const auto& [name, bound] : stated) {
+    ASSERT_TRUE(by_name.contains(name)) << name;
+    EXPECT_LE(by_name[name]["worst_error"].get<double>(), bound) << name;
+    EXPECT_LE(by_name[name]["mean_error"], by_name[name]["worst_error"]) << name;
+  }
+}
+
+TEST(SphereTruth, MatchesGoldenValues) {
+  // Its own statements: 1e-6, and 1e-9.
+  for (const auto& row : test::read_golden("asg_halfplane_visibility.csv"))
+    EXPECT_NEAR(asg_half_space_fraction(row.at("lambda"), row.at("mu"), row.at("theta_d"),
+                                        row.at("boundary_azimuth")),
+                row.at("fraction"), 1e-6);
+  for (const auto& row : test::read_golden("fh_hemisphere.csv"))
+    EXPECT_NEAR(sg_half_space_fraction(row.at("sharpness"), row.at("theta_d")), row.at("fraction"),
+                1e-9);
+}
 
 }  // namespace
 }  // namespace burnish::tools

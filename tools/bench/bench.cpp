@@ -40,14 +40,18 @@ std::string csv_quoted(const std::string& text) {
 
 }  // namespace
 
+void add_report_options(CLI::App& app, BenchOptions& options) {
+  app.add_flag("-q,--quiet", options.quiet, "print errors only: no progress, no table");
+  add_file(app, "--json", "FILE.json", options.json, "also write the rows as JSON", ".json");
+  add_file(app, "--csv", "FILE.csv", options.csv, "also write the rows as CSV", ".csv");
+}
+
 void add_bench_options(CLI::App& app, BenchOptions& options) {
   add_number(app, "--repeat", "N", options.repeat, {1, 1000}, "timed runs; their median counts");
   add_number(app, "--warmup", "N", options.warmup, {0, 1000}, "untimed runs before them");
-  app.add_flag("-q,--quiet", options.quiet, "print errors only: no progress, no table");
   add_number(app, "--threads", "N", options.threads, {0, 1024},
              "worker threads, 0 for all of the machine");
-  add_file(app, "--json", "FILE.json", options.json, "also write the rows as JSON", ".json");
-  add_file(app, "--csv", "FILE.csv", options.csv, "also write the rows as CSV", ".csv");
+  add_report_options(app, options);
 }
 
 Timing summarise(std::vector<double> seconds) {

@@ -25,7 +25,10 @@ struct BenchOptions {
   CommonOptions common() const { return {quiet, threads, {}}; }
 };
 
-/// Declares --repeat, --warmup, --quiet, --threads, --json and --csv.
+/// Declares --quiet, --json and --csv.
+void add_report_options(CLI::App& app, BenchOptions& options);
+
+/// Those, --repeat, --warmup and --threads.
 void add_bench_options(CLI::App& app, BenchOptions& options);
 
 /// Wall clock of the timed runs.
