@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <type_traits>
 
 #include "burnish/sphere/anisotropic_gaussian.h"
 
@@ -124,10 +124,9 @@ inline constexpr std::array<double, 6> kHalfTurnCosines<12> = {
 /// tan(psi / 2), a narrow one equal steps in sin(alpha / 2), in which it is a Gaussian. Steps and
 /// their number were chosen for the smallest worst error.
 ///
-/// In double for either precision: rounding, not the rule, would rule a float's error.
-template <int Digits>
+/// In double for a float's precision, too: rounding, not the rule, would rule its error.
+template <bool is_float>
 double hemisphere_hidden_exact(double sharpness, double sine, double cosine) {
-  constexpr bool is_float = Digits < 30;
   using T = double;
   constexpr T kNarrowFrom = 20;
   const T along = sharpness * cosine;
@@ -186,7 +185,7 @@ T visible_fraction_hemisphere(T sharpness, T distance,
   const T sine = std::sin(theta), cosine = std::max(std::cos(theta), T(0));
   if (level == HemisphereLevel::fast)
     return hemisphere_fraction(prepare_hemisphere(sharpness), sine, cosine);
-  const T hidden = T(internal::hemisphere_hidden_exact<std::numeric_limits<T>::digits>(
+  const T hidden = T(internal::hemisphere_hidden_exact<std::is_same_v<T, float>>(
       double(sharpness), std::abs(std::sin(double(theta))),
       std::max(std::cos(double(theta)), 0.0)));
   return sine >= 0 ? 1 - hidden : hidden;
