@@ -21,6 +21,22 @@ TEST(DependencyDirection, HoldsInEveryLayer) {
   }
 }
 
+// burnish/sphere/ can be taken alone: it includes nothing else of burnish.
+TEST(DependencyDirection, TheSphereStandsAlone) {
+  const fs::path folder = fs::path(BURNISH_SOURCE_DIR) / "runtime/include/burnish/sphere";
+  int files = 0;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    std::ifstream in(entry.path());
+    ++files;
+    for (std::string line; std::getline(in, line);) {
+      if (!line.starts_with("#include \"")) continue;
+      EXPECT_TRUE(line.starts_with("#include \"burnish/sphere/"))
+          << entry.path().filename() << ": " << line;
+    }
+  }
+  EXPECT_GT(files, 10);
+}
+
 /// The rules applied to a small tree, in which one file includes one header.
 class IncludeRules : public testing::Test {
  protected:
