@@ -14,8 +14,8 @@
 namespace burnish {
 
 enum class AsgIntegral {
-  fast,  ///< xu2013asg Eq. 11, at most pi: 0.68 % for bandwidths > 5, 58 % if both are above or
-         ///< both below 1; without bound for a long lobe with one below 1
+  fast,    ///< xu2013asg Eq. 11, at most pi: 0.68 % for bandwidths > 5, 58 % if both are above or
+           ///< both below 1; without bound for a long lobe with one below 1
   series,  ///< xu2013asg Eq. 10: 0.027 % for bandwidths > 5, 5.2 % > 1; below 1 it is `exact`
   exact,   ///< to rounding: 4e-7 in float, 6e-15 in double, for all bandwidths
 };
@@ -93,7 +93,8 @@ T asg_integral_exact(T bandwidth_x, T bandwidth_y) {
   constexpr T kEdgeOutOfSight = is_float ? T(17) : T(37);
   if (std::min(bandwidth_x, bandwidth_y) > kEdgeOutOfSight)
     return asg_integral_fast(bandwidth_x, bandwidth_y);
-  return asg_integral_midpoints < is_float ? 7 : 18 > (bandwidth_x, bandwidth_y);
+  constexpr int kPoints = is_float ? 7 : 18;
+  return asg_integral_midpoints<kPoints>(bandwidth_x, bandwidth_y);
 }
 
 template <class T>

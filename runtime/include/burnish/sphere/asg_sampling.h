@@ -33,8 +33,9 @@ T sample_asg_azimuth(T large, T small, T squeeze, T offset, T u) {
   // Error of the distribution function: 7e-7 and 4e-11 for any bandwidths. A step of Newton's
   // method is short, a third of the points does for it.
   constexpr bool is_float = std::is_same_v<T, float>;
-  const auto& rule = unit_gauss < is_float ? 12 : 24 > ();
-  const auto& step_rule = unit_gauss < is_float ? 4 : 8 > ();
+  constexpr int kPoints = is_float ? 12 : 24;
+  const auto& rule = unit_gauss<kPoints>();
+  const auto& step_rule = unit_gauss<kPoints / 3>();
   constexpr T kQuarter = kPi<T> / 2;
   T psi = u * kQuarter, reached = integral(rule, 0, psi);
   const T target = u * integral(rule, 0, kQuarter);
