@@ -38,6 +38,11 @@ struct Options {
 constexpr size_t kItems = 2048;  ///< lobes in a pass: all arrays stay in the first two caches
 constexpr unsigned kSeed = 20131;
 
+// What an ASG's value cannot do without, and the value itself.
+constexpr const char* kExp = "exp";
+constexpr const char* kDot = "dot product";
+constexpr const char* kAsgEval = "ASG eval";
+
 /// Random inputs, the same for every operator. Single lobes for the scalar forms, arrays of their
 /// parts for the batch forms.
 struct Inputs {
@@ -53,9 +58,22 @@ struct Inputs {
   std::vector<float> sg_distance;                ///< of another one from the round lobe
   std::vector<float> x, y, z;                    ///< of the directions
   std::vector<float> exponents;                  ///< negative
-  std::vector<float> results = std::vector<float>(kItems);
+  std::vector<float> frame_x[3], frame_z[3];     ///< components of the lobes' axes
+  std::vector<float> gradient_x, gradient_y;     ///< of the gradients, in the lobes' frames
+  std::vector<float> ones = std::vector<float>(kItems, 1.0f);
+  std::vector<float> results = std::vector<float>(kItems), more_results = results;
 
   batch::Directions soa() const { return {x, y, z}; }
+  batch::AnisotropicGaussians lobes_soa() const {
+    return {{frame_x[0], frame_x[1], frame_x[2]},
+            {frame_z[0], frame_z[1], frame_z[2]},
+            bandwidth_x,
+            bandwidth_y,
+            ones};
+  }
+  batch::SphericalGaussians round_soa() const {
+    return {{frame_z[0], frame_z[1], frame_z[2]}, sharpness, ones};
+  }
 };
 
 /// Lobes of a geometric mean bandwidth of 1..1000 and a ratio of bandwidths of 1..100, a second
@@ -87,6 +105,10 @@ Inputs make_inputs() {
     in.round_lobes.push_back({axis, 2 * mean, 1});
     in.round_others.push_back({v, mean, 1});
     in.directions.push_back(v);
+    for (int axis = 0; axis < 3; ++axis) {
+      in.frame_x[axis].push_back(lobe.frame.x[axis]);
+      in.frame_z[axis].push_back(lobe.frame.z[axis]);
+    }
     in.x.push_back(v.x());
     in.y.push_back(v.y());
     in.z.push_back(v.z());
@@ -95,6 +117,8 @@ Inputs make_inputs() {
     in.sharpness.push_back(2 * mean);
     const float azimuth = around(random);
     in.azimuth.push_back(azimuth);
+    in.gradient_x.push_back(std::cos(azimuth));
+    in.gradient_y.push_back(std::sin(azimuth));
     in.gradients.push_back(std::cos(azimuth) * lobe.frame.x + std::sin(azimuth) * lobe.frame.y);
     in.across.push_back(directional_bandwidth(lobe, in.gradients.back()));
     const auto near_boundary = [&](float bandwidth) {
@@ -201,7 +225,7 @@ std::vector<Measured> asg_operators(Inputs& in, const Truths& truths) {
     };
   };
   return {
-      scalar(in, "ASG eval", "", [&in](size_t i) { return eval(in.lobes[i], in.directions[i]); }),
+      scalar(in, kAsgEval, "", [&in](size_t i) { return eval(in.lobes[i], in.directions[i]); }),
       scalar(in, "ASG integral", "fast", integral_at(AsgIntegral::fast), &truths.asg_integral),
       scalar(in, "ASG integral", "series", integral_at(AsgIntegral::series), &truths.asg_integral),
       scalar(
@@ -298,34 +322,57 @@ std::vector<Measured> visibility_models(Inputs& in, const Truths& truths) {
   };
 }
 
-/// What a batch form cannot do without: it is read against these.
+/// One lobe against many, or many each by itself, as the shading kernels use them.
 std::vector<Measured> batch_forms(Inputs& in, const Truths& truths) {
   const std::span<float> out(in.results);
-  const auto integral_at = [&in, out](AsgIntegral level) {
-    return [&in, out, level] { batch::asg_integral(in.bandwidth_x, in.bandwidth_y, level, out); };
-  };
   const auto form = [](const char* name, const char* level, std::function<void()> work,
                        const Truth* truth = nullptr) {
     return Measured{name, level, "batch", std::move(work), truth};
   };
+  const auto integral_at = [&in, out](AsgIntegral level) {
+    return [&in, out, level] { batch::asg_integral(in.bandwidth_x, in.bandwidth_y, level, out); };
+  };
+  const auto hemisphere_at = [&in, out](HemisphereLevel level) {
+    return [&in, out, level] {
+      batch::visible_fraction_hemisphere(in.sharpness, in.sg_distance, out, level);
+    };
+  };
   return {
-      form("exp", "", [&in, out] { batch::exp(in.exponents, out); }),
+      form(kExp, "", [&in, out] { batch::exp(in.exponents, out); }),
+      form(kDot, "", [&in, out] { batch::dot(in.directions[0], in.soa(), out); }),
       form("SG eval", "", [&in, out] { batch::eval(in.round_lobes[0], in.soa(), out); }),
-      form("ASG eval", "", [&in, out] { batch::eval(in.lobes[0], in.soa(), out); }),
+      form("SG integral", "", [&in, out] { batch::sg_integral(in.sharpness, out); }),
+      form("SG inner product", "",
+           [&in, out] { batch::inner_product(in.round_lobes[0], in.round_soa(), out); }),
+      form("SG in a half-space", "fast", hemisphere_at(HemisphereLevel::fast),
+           &truths.sg_half_space),
+      form("SG in a half-space", "exact", hemisphere_at(HemisphereLevel::exact),
+           &truths.sg_half_space),
+      form(kAsgEval, "", [&in, out] { batch::eval(in.lobes[0], in.soa(), out); }),
+      form(kAsgEval, "a lobe each", [&in, out] { batch::eval(in.lobes_soa(), in.soa(), out); }),
       form("ASG integral", "fast", integral_at(AsgIntegral::fast), &truths.asg_integral),
       form("ASG integral", "exact", integral_at(AsgIntegral::exact), &truths.asg_integral),
-      form(
-          "SG in a half-space", "fast",
-          [&in, out] { batch::visible_fraction_hemisphere(in.sharpness, in.sg_distance, out); },
-          &truths.sg_half_space),
+      form("ASG inner product", "closed form",
+           [&in, out] { batch::inner_product(in.lobes[0], in.lobes_soa(), out); }),
+      form("ASG clamped cosine", "from moments",
+           [&in, out] {
+             batch::mean_clamped_cosine(in.moments[0], in.lobes[0].frame, in.soa(), out);
+           }),
       form(
           "ASG in a half-space", "hemisphere",
           [&in, out] { batch::visible_fraction_hemisphere(in.sharpness, in.distance, out); },
           &truths.asg_half_space),
+      form("bandwidth across a boundary", "",
+           [&in, out] {
+             batch::directional_bandwidth(in.bandwidth_x, in.bandwidth_y, in.gradient_x,
+                                          in.gradient_y, out);
+           }),
       form(
           "ASG in a half-space", "directional",
           [&in, out] { batch::visible_fraction_directional(in.across, in.distance, out); },
           &truths.asg_half_space),
+      form("octahedral map", "",
+           [&in, out] { batch::direction_to_octahedral(in.soa(), out, in.more_results); }),
   };
 }
 
@@ -370,6 +417,14 @@ void run(const Options& options) {
   std::vector<BenchRow> rows;
   for (size_t i = 0; i < all.size(); ++i) rows.push_back(make_row(all[i], ns[i], in));
   report_bench("sphere", rows, options.bench, work);
+  const auto ns_of = [&](const char* name) {
+    for (size_t i = 0; i < all.size(); ++i)
+      if (all[i].operator_name == name && all[i].form == "batch") return ns[i];
+    return 0.0;
+  };
+  work.print(
+      fmt::format("\nbatch forms on {}; ASG eval takes {:.2f} times an exp and two dot products",
+                  options.instruction_set, ns_of(kAsgEval) / (ns_of(kExp) + 2 * ns_of(kDot))));
 }
 
 }  // namespace
