@@ -1,6 +1,6 @@
 # Configures PROJECT_DIR against the burnish that is installed in PREFIX, builds its program and runs
-# it. The one number it prints must lie between LOWEST and HIGHEST. With PACKAGES, find_package()
-# may find no others.
+# it. The one number it prints must lie between LOWEST and HIGHEST. With PACKAGES, separated by
+# commas, find_package() may find no others.
 cmake_minimum_required(VERSION 3.25)
 
 set(build_dir ${SCRATCH_DIR}/build)
@@ -12,7 +12,9 @@ if(BURNISH_SANITIZE)
 endif()
 set(disabled "")
 if(PACKAGES)
-  foreach(package OpenMesh OpenEXR Imath PNG HDF5 nlohmann_json fmt embree TBB Ceres CLI11 GTest)
+  string(REPLACE "," ";" PACKAGES "${PACKAGES}")
+  foreach(package OpenMesh OpenEXR Imath PNG HDF5 nlohmann_json fmt embree TBB Ceres CLI11 GTest
+          hwy benchmark rapidcheck)
     if(NOT package IN_LIST PACKAGES)
       list(APPEND disabled -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
     endif()
