@@ -18,13 +18,16 @@ struct AsgEval : ToAmplitude {
   }
 };
 
+constexpr const char* name_of(AsgIntegral level) {
+  return level == AsgIntegral::fast     ? "ASG: integral, fast"
+         : level == AsgIntegral::series ? "ASG: integral, series"
+                                        : "ASG: integral, exact";
+}
+
 template <AsgIntegral level>
 struct AsgIntegralAt : Relative {
-  static constexpr const char* kNames[] = {"ASG: integral, fast", "ASG: integral, series",
-                                           "ASG: integral, exact"};
   // The series subtracts its correction, which is up to .58 of the leading term.
-  static constexpr Claims kClaims = {kNames[static_cast<int>(level)], kRatio | kAmplitude,
-                                     2 * kFewRoundings};
+  static constexpr Claims kClaims = {name_of(level), kRatio | kAmplitude, 2 * kFewRoundings};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {
     return {integral(asg(x), level)};
@@ -33,10 +36,10 @@ struct AsgIntegralAt : Relative {
 
 template <SmoothTerms smooth>
 struct AsgProductAmplitude : ToAmplitude {
-  static constexpr const char* kNames[] = {"ASG: product, amplitude",
-                                           "ASG: product (expanded), amplitude"};
-  static constexpr Claims kClaims = {kNames[static_cast<int>(smooth)], kRatio | kOther | kAngle,
-                                     kFewRoundings};
+  static constexpr Claims kClaims = {smooth == SmoothTerms::constant
+                                         ? "ASG: product, amplitude"
+                                         : "ASG: product (expanded), amplitude",
+                                     kRatio | kOther | kAngle, kFewRoundings};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {
     return {product(asg(x), other_asg(x), smooth).amplitude};

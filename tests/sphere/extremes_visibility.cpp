@@ -48,13 +48,16 @@ struct BandwidthAcross : Relative {
   }
 };
 
+constexpr const char* name_of(VisibilityModel model) {
+  return model == VisibilityModel::cap          ? "ASG: visible integral, cap"
+         : model == VisibilityModel::hemisphere ? "ASG: visible integral, hemisphere"
+                                                : "ASG: visible integral, directional";
+}
+
 template <VisibilityModel model>
 struct VisibleIntegral {
   static double scale(const Extreme<double>& x) { return std::abs(integral(asg(x))); }
-  static constexpr const char* kNames[] = {"ASG: visible integral, cap",
-                                           "ASG: visible integral, hemisphere",
-                                           "ASG: visible integral, directional"};
-  static constexpr Claims kClaims = {kNames[static_cast<int>(model)], kRatio | kAngle | kAmplitude,
+  static constexpr Claims kClaims = {name_of(model), kRatio | kAngle | kAmplitude,
                                      2 * kFewRoundings, true, Trend::rises};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {
