@@ -14,7 +14,7 @@
 /// sign and monotone, and how far is float from double?
 namespace burnish::test {
 
-/// One combination. A lobe has the axis z; a second one lies at `angle` from it.
+/// One combination. A lobe has the axis `frame.z`; a second one lies at `angle` from it.
 template <class T>
 struct Extreme {
   T narrow = 1;        ///< sharpness, or the larger bandwidth
@@ -26,6 +26,7 @@ struct Extreme {
   T distance = 0;  ///< angle - pi / 2: of a boundary from the lobe's axis
   T azimuth = 0;   ///< of `direction` from the axis of `narrow`
   T amplitude = 1;
+  Frame<T> frame;  ///< the lobe's: the world's, and a turned one, rounded to T
   Vector3<T> direction = Vector3<T>::UnitZ();  ///< at `angle` and `azimuth`, rounded to T
   Frame<T> other_frame;                        ///< around it, rounded to T
 
@@ -40,6 +41,7 @@ struct Extreme {
             U(distance),
             U(azimuth),
             U(amplitude),
+            frame.template cast<U>(),
             direction.template cast<U>(),
             other_frame.template cast<U>()};
   }
@@ -78,6 +80,19 @@ struct Findings {
   std::string first_fault;  ///< empty where every result was sound
 };
 
+/// Frames and directions from the angles, in a world that is turned, rounded to T.
+template <class T>
+void place(Extreme<T>& x, const Eigen::Matrix3d& world) {
+  const double s = std::sin(double(x.angle)), c = std::cos(double(x.angle));
+  const Vector3d along(std::cos(double(x.azimuth)), std::sin(double(x.azimuth)), 0);
+  const Vector3d tilted = c * along - s * Vector3d::UnitZ();
+  const Vector3d axis = s * along + c * Vector3d::UnitZ();
+  const auto turned = [&](const Vector3d& v) { return Vector3d(world * v).cast<T>().eval(); };
+  x.frame = {turned(Vector3d::UnitX()), turned(Vector3d::UnitY()), turned(Vector3d::UnitZ())};
+  x.direction = turned(axis);
+  x.other_frame = {turned(tilted), turned(axis.cross(tilted)), turned(axis)};
+}
+
 template <class T>
 std::vector<Extreme<T>> all_extremes(unsigned uses) {
   using limits = std::numeric_limits<T>;
@@ -89,6 +104,7 @@ std::vector<Extreme<T>> all_extremes(unsigned uses) {
                                       limits::epsilon(),
                                       T(1e-4),
                                       std::nextafter(half_pi, T(0)),
+                                      half_pi,
                                       std::nextafter(half_pi, T(4)),
                                       std::nextafter(pi, T(0)),
                                       pi};
@@ -97,34 +113,33 @@ std::vector<Extreme<T>> all_extremes(unsigned uses) {
   };
   const auto ratios = used(kRatio, some_ratios, 1);
   const auto other_ratios = uses & kOther ? ratios : std::vector<T>{1};
+  // Rounding hides in the world's own axes.
+  const Eigen::Matrix3d turn =
+      Eigen::AngleAxisd(0.9, Vector3d(1, -2, 3).normalized()).toRotationMatrix();
   std::vector<Extreme<T>> all;
-  for (const T width : widths)
-    for (const T ratio : ratios)
-      for (const T other_width : used(kOther, widths, 1))
-        for (const T other_ratio : other_ratios)
-          for (const T azimuth : used(kRatio, {0, T(0.7), half_pi}, 0))
-            for (const T amplitude :
-                 used(kAmplitude, {0, limits::denorm_min(), 1, T(1e30), T(-2)}, 1))
-              // Innermost, so that neighbours in the list show the trend.
-              for (const T angle : used(kAngle, some_angles, 0)) {
-                Extreme<T> x;
-                x.narrow = width;
-                x.wide = width / ratio;
-                x.ratio = ratio;
-                x.other_narrow = other_width;
-                x.other_wide = other_width / other_ratio;
-                x.angle = angle;
-                x.distance = angle - half_pi;
-                x.azimuth = azimuth;
-                x.amplitude = amplitude;
-                const double s = std::sin(double(angle)), c = std::cos(double(angle));
-                const Vector3d along(std::cos(double(azimuth)), std::sin(double(azimuth)), 0);
-                const Vector3d tilted = c * along - s * Vector3d::UnitZ();
-                const Vector3d axis = s * along + c * Vector3d::UnitZ();
-                x.direction = axis.template cast<T>();
-                x.other_frame = Frame<double>{tilted, axis.cross(tilted), axis}.template cast<T>();
-                all.push_back(x);
-              }
+  for (const Eigen::Matrix3d& world : {Eigen::Matrix3d(Eigen::Matrix3d::Identity()), turn})
+    for (const T width : widths)
+      for (const T ratio : ratios)
+        for (const T other_width : used(kOther, widths, 1))
+          for (const T other_ratio : other_ratios)
+            for (const T azimuth : used(kRatio, {0, T(0.7), half_pi}, 0))
+              for (const T amplitude :
+                   used(kAmplitude, {0, limits::denorm_min(), 1, T(1e30), T(-2)}, 1))
+                // Innermost, so that neighbours in the list show the trend.
+                for (const T angle : used(kAngle, some_angles, 0)) {
+                  Extreme<T> x;
+                  x.narrow = width;
+                  x.wide = width / ratio;
+                  x.ratio = ratio;
+                  x.other_narrow = other_width;
+                  x.other_wide = other_width / other_ratio;
+                  x.angle = angle;
+                  x.distance = angle - half_pi;
+                  x.azimuth = azimuth;
+                  x.amplitude = amplitude;
+                  place(x, world);
+                  all.push_back(x);
+                }
   return all;
 }
 
@@ -179,7 +194,9 @@ Findings examine() {
       const double scale = std::max(
           {std::abs(truth), Operator::scale(exact), double(std::numeric_limits<float>::min())});
       const double difference = std::abs(in_float[i] - truth) / scale;
-      if (difference <= findings.worst) continue;
+      if (!std::isfinite(in_double[i]) && findings.first_fault.empty())
+        findings.first_fault = "double of float inputs: not finite at " + describe(x);
+      if (!(difference > findings.worst)) continue;
       findings.worst = difference;
       findings.where = describe(x);
     }
@@ -215,7 +232,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 template <class T>
 SphericalGaussian<T> sg(const Extreme<T>& x) {
-  return {Vector3<T>::UnitZ(), x.narrow, x.amplitude};
+  return {x.frame.z, x.narrow, x.amplitude};
 }
 template <class T>
 SphericalGaussian<T> other_sg(const Extreme<T>& x) {
@@ -223,7 +240,7 @@ SphericalGaussian<T> other_sg(const Extreme<T>& x) {
 }
 template <class T>
 AnisotropicGaussian<T> asg(const Extreme<T>& x) {
-  return {Frame<T>{}, x.narrow, x.wide, x.amplitude};
+  return {x.frame, x.narrow, x.wide, x.amplitude};
 }
 template <class T>
 AnisotropicGaussian<T> other_asg(const Extreme<T>& x) {

@@ -148,6 +148,17 @@ struct ResultFrames : ToOne {
   }
 };
 
+struct AsgConversions : Relative {
+  static constexpr Claims kClaims = {"ASG: effective sharpness, to and from SG", kRatio,
+                                     kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const SphericalGaussian<T> round = sg_from_asg(asg(x));
+    return {effective_sharpness(asg(x)), round.sharpness, eval(round, round.axis),
+            asg_from_sg(sg(x)).bandwidth_x};
+  }
+};
+
 struct AsgSupportAngles : Relative {
   static constexpr Claims kClaims = {"ASG: support", kRatio, 2 * kFewRoundings};
   template <class T>
@@ -161,11 +172,13 @@ struct AsgClampedCosine : ToOne {
   static constexpr Claims kClaims = {"ASG: clamped cosine", kRatio | kAngle, 2 * kFewRoundings};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {
-    return {mean_clamped_cosine(asg_moments(x.narrow, x.wide), x.direction)};
+    return {mean_clamped_cosine(asg_moments(x.narrow, x.wide), x.frame.to_local(x.direction))};
   }
 };
 
-struct WarpBandwidths : Relative {
+struct WarpBandwidths {
+  // Behind the horizon the amplitude is 0, and the axes hang on the rounding of the view.
+  static double scale(const Extreme<double>& x) { return x.angle > 1.6 ? kInfinity : 0; }
   // The view's float components, squared and divided by a cosine that is held above .01.
   static constexpr Claims kClaims = {"warp: bandwidths", kRatio | kAngle, 4 * kFewRoundings};
   template <class T>
@@ -185,14 +198,43 @@ struct WarpAmplitude : Relative {
 };
 
 struct WarpMean {
-  // Far behind the horizon, where the amplitude vanishes, widths hang on a difference of tails.
-  static double scale(const Extreme<double>& x) { return x.narrow; }
+  // Far behind the horizon, where the amplitude vanishes, widths hang on a difference of tails;
+  // seen along its axis, a wide lobe is squeezed across a view that rounding chooses.
+  static double scale(const Extreme<double>& x) {
+    if (x.angle > 3 || (x.angle < 1e-3 && x.wide < 10)) return kInfinity;
+    return x.narrow;
+  }
   static constexpr Claims kClaims = {"warp, mean form: bandwidths", kRatio | kAngle, 1e-3};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {
     const auto warped =
         warp_mean_to_incoming(asg(x), make_lobe_shape(x.narrow, x.wide), x.direction);
     return {warped.lobe.bandwidth_x, warped.lobe.bandwidth_y};
+  }
+};
+
+/// Mass of half vectors per mass of the lobe, and the frame.
+struct WarpMeanMass {
+  static double scale(const Extreme<double>&) { return 4; }
+  static constexpr Claims kClaims = {"warp, mean form: jacobian and frame", kRatio | kAngle,
+                                     2 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const auto warped =
+        warp_mean_to_incoming(asg(x), make_lobe_shape(x.narrow, x.wide), x.direction);
+    std::vector<T> all = frame_lengths(warped.lobe.frame);
+    all.push_back(warped.jacobian);
+    return all;
+  }
+};
+
+struct WarpMeanIntegral {
+  static double scale(const Extreme<double>& x) { return 4 * asg_integral_exact(x.narrow, x.wide); }
+  static constexpr Claims kClaims = {"warp, mean form: integral", kRatio | kAngle, 1e-4};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {integral(
+        warp_mean_to_incoming(asg(x), make_lobe_shape(x.narrow, x.wide), x.direction).lobe)};
   }
 };
 
@@ -204,7 +246,8 @@ std::vector<Row> asg_rows() {
                      AsgProductAmplitude<SmoothTerms::expanded>, AsgProductBandwidths,
                      AsgInnerProduct<false>, AsgInnerProduct<true>, AsgSgConvolution,
                      AsgAsgConvolution, ResultFrames, AsgPdf, AsgSample, AsgSupportAngles,
-                     AsgClampedCosine, WarpBandwidths, WarpAmplitude, WarpMean>();
+                     AsgClampedCosine, WarpBandwidths, WarpAmplitude, WarpMean, WarpMeanMass,
+                     WarpMeanIntegral>();
 }
 
 }  // namespace burnish::test

@@ -127,11 +127,25 @@ struct SgSample : ToOne {
   }
 };
 
-struct NasgEval : ToAmplitude {
-  static constexpr Claims kClaims = {"NASG: eval", kRatio | kAngle | kAmplitude, kFewRoundings};
+template <class T>
+NormalisedAsg<T> nasg(const Extreme<T>& x) {
+  return {x.frame, x.narrow, x.ratio - 1, x.amplitude};
+}
+
+// An anisotropy of 1e6 makes 1e3 roundings of an azimuth's cosine, which enters squared.
+constexpr double kAzimuthRounding = 1e3 * kRounding;
+
+// Opposite to its axis, an anisotropic lobe has no limit.
+bool is_opposite(const Extreme<double>& x) { return x.ratio > 1 && x.angle > 3.14; }
+
+struct NasgEval {
+  static double scale(const Extreme<double>& x) {
+    return is_opposite(x) ? kInfinity : std::abs(x.amplitude);
+  }
+  static constexpr Claims kClaims = {"NASG: eval", kRatio | kAngle | kAmplitude, kAzimuthRounding};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {
-    return {eval(NormalisedAsg<T>{{}, x.narrow, x.ratio - 1, x.amplitude}, x.direction)};
+    return {eval(nasg(x), x.direction)};
   }
 };
 
@@ -139,7 +153,7 @@ struct NasgIntegral : Relative {
   static constexpr Claims kClaims = {"NASG: integral", kRatio | kAmplitude, kFewRoundings};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {
-    return {integral(NormalisedAsg<T>{{}, x.narrow, x.ratio - 1, x.amplitude})};
+    return {integral(nasg(x))};
   }
 };
 
@@ -149,10 +163,78 @@ struct NasgSample : ToOne {
   static std::vector<T> values(const Extreme<T>& x) {
     std::vector<T> all;
     for (const T u : {T(0), T(0.25), T(0.75), T(1)}) {
-      const Vector3<T> v = sample(NormalisedAsg<T>{{}, x.narrow, x.ratio - 1, 1}, u, T(0.125));
+      const Vector3<T> v = sample(nasg(x), u, T(0.125));
       all.insert(all.end(), {v.x(), v.y(), v.z()});
     }
     return all;
+  }
+};
+
+struct NasgPdf {
+  static double scale(const Extreme<double>& x) {
+    if (is_opposite(x)) return kInfinity;
+    return pdf(NormalisedAsg<double>{{}, x.narrow, x.ratio - 1, 1}, Vector3d(Vector3d::UnitZ()));
+  }
+  static constexpr Claims kClaims = {"NASG: pdf", kRatio | kAngle, kAzimuthRounding};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {pdf(nasg(x), x.direction)};
+  }
+};
+
+struct NasgConversions {
+  // The sharpness is twice the bandwidth, and held at the end of float's range.
+  static double scale(const Extreme<double>& x) {
+    return 2 * x.wide > std::numeric_limits<float>::max() ? kInfinity : 0;
+  }
+  static constexpr Claims kClaims = {"NASG: from an ASG and back", kRatio, kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const auto there = nasg_from_asg(asg(x));
+    const auto back = asg_from_nasg(there);
+    return {there.sharpness, there.anisotropy, back.bandwidth_x, back.bandwidth_y};
+  }
+};
+
+struct CircularInnerProduct {
+  static double scale(const Extreme<double>& x) {
+    if (x.narrow + x.other_narrow > std::numeric_limits<float>::max()) return kInfinity;
+    return std::abs(
+        integral(CircularGaussian<double>{0, std::max(x.narrow, x.other_narrow), x.amplitude}));
+  }
+  static constexpr Claims kClaims = {"circular: inner product", kOther | kAngle | kAmplitude,
+                                     kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {inner_product(CircularGaussian<T>{0, x.narrow, x.amplitude},
+                          CircularGaussian<T>{x.angle, x.other_narrow, 1})};
+  }
+};
+
+struct LongitudinalProduct : ToAmplitude {
+  static constexpr Claims kClaims = {"longitudinal: product, amplitude",
+                                     kOther | kAngle | kAmplitude, kFewRoundings, true,
+                                     Trend::falls};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {product(LongitudinalGaussian<T>{0, x.narrow, x.amplitude},
+                    LongitudinalGaussian<T>{x.angle, x.other_narrow, 1})
+                .amplitude};
+  }
+};
+
+struct LongitudinalCosine {
+  static double scale(const Extreme<double>& x) {
+    return std::abs(integral(LongitudinalGaussian<double>{0, x.narrow, x.amplitude},
+                             -kPi<double> / 2, kPi<double> / 2));
+  }
+  static constexpr Claims kClaims = {"longitudinal: integral with the cosine", kAngle | kAmplitude,
+                                     2 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const T center = std::clamp(x.distance, -kPi<T> / 2, kPi<T> / 2);
+    return {integral_times_cosine(LongitudinalGaussian<T>{center, x.narrow, x.amplitude},
+                                  -kPi<T> / 2, kPi<T> / 2)};
   }
 };
 
@@ -214,8 +296,9 @@ struct LongitudinalIntegral {
 std::vector<Row> sg_rows() {
   return examine_all<SgEval, SgIntegral, SgProductAmplitude, SgProductSharpness, SgInnerProduct,
                      SgConvolution, SgMeanCosine, SgFromMean, SgClampedCosine, SgPdf, SgSample,
-                     NasgEval, NasgIntegral, NasgSample, CircularEval, CircularIntegral,
-                     CircularProduct, CircularArc, LongitudinalIntegral>();
+                     NasgEval, NasgIntegral, NasgSample, NasgPdf, NasgConversions,
+                     CircularInnerProduct, LongitudinalProduct, LongitudinalCosine, CircularEval,
+                     CircularIntegral, CircularProduct, CircularArc, LongitudinalIntegral>();
 }
 
 }  // namespace burnish::test

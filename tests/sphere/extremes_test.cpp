@@ -91,7 +91,10 @@ TYPED_TEST(SphereExtremesOf, WidthsOrderIntegralsMeansAndSupports) {
   const T infinity = std::numeric_limits<T>::infinity();
   T integral_before = infinity, round_before = infinity, circle_before = infinity, mean_before = 0,
     support_before = infinity;
-  for (const test::Extreme<T>& x : test::all_extremes<T>(0)) {  // rising widths
+  T width_before = 0;
+  for (const test::Extreme<T>& x : test::all_extremes<T>(0)) {
+    if (x.narrow < width_before) break;  // widths rise, and begin anew in the turned world
+    width_before = x.narrow;
     // Two results in their last place may change order.
     const T up = 1 + 4 * std::numeric_limits<T>::epsilon();
     const T whole = integral(test::asg(x)), round = integral(test::sg(x));

@@ -54,6 +54,15 @@ constexpr const char* name_of(VisibilityModel model) {
                                                 : "ASG: visible integral, directional";
 }
 
+struct DirectionalBandwidth : Relative {
+  static constexpr Claims kClaims = {"directional bandwidth", kRatio, kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    return {directional_bandwidth(asg(x), x.other_frame.x),
+            directional_bandwidth(asg(x), Vector3<T>(Vector3<T>::Zero()))};
+  }
+};
+
 template <VisibilityModel model>
 struct VisibleIntegral {
   static double scale(const Extreme<double>& x) { return std::abs(integral(asg(x))); }
@@ -61,14 +70,29 @@ struct VisibleIntegral {
                                      2 * kFewRoundings, true, Trend::rises};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {
-    const Vector3<T> gradient(std::cos(x.azimuth), std::sin(x.azimuth), T(0));
+    const Vector3<T> gradient = std::cos(x.azimuth) * x.frame.x + std::sin(x.azimuth) * x.frame.y;
     return {visible_integral(model, asg(x), x.distance, gradient)};
+  }
+};
+
+/// The teeth's integrals sum to the lobe's.
+struct CombIntegral : Relative {
+  static constexpr Claims kClaims = {"comb: integral of the teeth", kRatio, 2 * kFewRoundings};
+  template <class T>
+  static std::vector<T> values(const Extreme<T>& x) {
+    const auto comb = make_lobe_comb(x.narrow, x.wide, 5);
+    T sum = 0;
+    for (int k = 0; k < comb.taps.count; ++k) sum += integral(comb_tooth(comb, asg(x), k));
+    return {sum, comb.taps.tap[0].bandwidth, comb.taps.tap[4].sine};
   }
 };
 
 /// A boundary at x.distance from the lobe's axis.
 template <bool quantile, int count>
-struct Taps : ToOne {
+struct Taps {
+  // A tap's distance from the boundary has the rounding of a direction, of which the lobe makes
+  // sqrt(bandwidth) times as much.
+  static double scale(const Extreme<double>& x) { return 1 + std::sqrt(x.narrow); }
   static constexpr const char* kName = quantile ? "quantile taps" : "comb taps";
   static constexpr Claims kClaims = {kName, kRatio | kAngle, 4 * kFewRoundings};
   template <class T>
@@ -92,11 +116,11 @@ struct Taps : ToOne {
 }  // namespace
 
 std::vector<Row> visibility_rows() {
-  return examine_all<Hemisphere<HemisphereLevel::fast>, Hemisphere<HemisphereLevel::exact>, Cap,
-                     Directional, BandwidthAcross, VisibleIntegral<VisibilityModel::cap>,
-                     VisibleIntegral<VisibilityModel::hemisphere>,
-                     VisibleIntegral<VisibilityModel::directional>, Taps<false, 5>,
-                     Taps<true, 5>>();
+  return examine_all<
+      Hemisphere<HemisphereLevel::fast>, Hemisphere<HemisphereLevel::exact>, Cap, Directional,
+      BandwidthAcross, DirectionalBandwidth, VisibleIntegral<VisibilityModel::cap>,
+      VisibleIntegral<VisibilityModel::hemisphere>, VisibleIntegral<VisibilityModel::directional>,
+      Taps<false, 5>, Taps<true, 5>>();
 }
 
 }  // namespace burnish::test

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Eigenvalues>
 
@@ -58,10 +59,11 @@ AnisotropicGaussian<T> asg_from_sg(const SphericalGaussian<T>& lobe) {
 }
 
 /// Sharpness of the spherical Gaussian whose support has the same area: 2 sqrt(bandwidth_x
-/// bandwidth_y).
+/// bandwidth_y), at most the largest finite number.
 template <class T>
 T effective_sharpness(const AnisotropicGaussian<T>& lobe) {
-  return 2 * std::sqrt(lobe.bandwidth_x) * std::sqrt(lobe.bandwidth_y);
+  const T sharpness = 2 * std::sqrt(lobe.bandwidth_x) * std::sqrt(lobe.bandwidth_y);
+  return std::min(sharpness, std::numeric_limits<T>::max());
 }
 
 /// The spherical Gaussian of the same peak and, for narrow lobes, the same integral: the inverse of

@@ -161,7 +161,10 @@ AnisotropicGaussian<T> product(const AnisotropicGaussian<T>& a, const Anisotropi
   const double cos_reference = z.z(), cos_other = z.dot(joint.other_axis);
   const Frame<double> tangent = frame_from_axis(z);
   double weights[6] = {joint.weight[0], joint.weight[1], joint.weight[2], joint.weight[3], 0, 0};
+  // Without the smooth terms the last two have no weight, but 0 times garbage may be NaN.
   Vector2<double> rows[6];
+  rows[4].setZero();
+  rows[5].setZero();
   for (int i = 0; i < 4; ++i) rows[i] = {tangent.x.dot(joint.row[i]), tangent.y.dot(joint.row[i])};
   if (expanded) {
     // -log(v . z1) curves by u^2 / 2 + (u . z1)^2 / (2 cos^2); near the horizon, where it diverges,

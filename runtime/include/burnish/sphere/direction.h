@@ -24,7 +24,10 @@ inline constexpr T kPi = T(3.14159265358979323846264338327950288L);
 /// equal and nearly opposite directions, where acos of the dot product loses half the digits.
 template <class T>
 T angle_between(const Vector3<T>& a, const Vector3<T>& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
+  // a x b from the difference of near vectors, the sum of opposite ones: both are exact.
+  const T cosine = a.dot(b);
+  const Vector3<T> offset = cosine > 0 ? Vector3<T>(b - a) : Vector3<T>(b + a);
+  return std::atan2(a.cross(offset).norm(), cosine);
 }
 
 }  // namespace burnish

@@ -29,14 +29,17 @@ namespace internal {
 /// log of the lobe's value at unit amplitude.
 template <class T>
 T nasg_exponent(const NormalisedAsg<T>& lobe, const Vector3<T>& direction) {
-  const T x = lobe.frame.x.dot(direction), y = lobe.frame.y.dot(direction);
-  const T square = x * x + y * y;
   const bool front = lobe.frame.z.dot(direction) > 0;
+  // x and y from the nearer pole: v . x of a rounded frame is off by an epsilon there.
+  const Vector3<T> offset =
+      front ? Vector3<T>(direction - lobe.frame.z) : Vector3<T>(direction + lobe.frame.z);
+  const T x = lobe.frame.x.dot(offset), y = lobe.frame.y.dot(offset);
+  const T square = x * x + y * y;
   // log K and the azimuth: on the axis K = 1, whatever the azimuth; opposite to it K^e = 0 unless
   // the azimuth or the anisotropy makes e zero.
   const T log_k =
-      front ? std::log1p(T(-0.25) * std::min((direction - lobe.frame.z).squaredNorm(), T(2)))
-            : std::log((direction + lobe.frame.z).squaredNorm() / 4);
+      front ? std::log1p(T(-0.25) * std::min(offset.squaredNorm(), T(2)))
+            : std::log(offset.squaredNorm() / 4);
   const T e = lobe.anisotropy * (square > 0 ? std::min(x * x / square, T(1)) : T(front ? 0 : 1));
   return (e > 0 ? e * log_k : T(0)) + 2 * (lobe.sharpness * std::expm1((1 + e) * log_k));
 }

@@ -55,7 +55,9 @@ OctahedralTangents<T> octahedral_tangents(T u, T v) {
   const T s = 2 * u - 1, t = 2 * v - 1;
   const T sign_u = std::copysign(T(1), s), sign_v = std::copysign(T(1), t);
   // The poles have no derivative: step off by a distance far below a texel of any map.
-  const T up = std::max(std::abs(s), T(1e-6)), vp = std::max(std::abs(t), T(1e-6));
+  constexpr T kStep = T(1e-6);
+  const T up = std::clamp(std::abs(s), kStep, 1 - kStep);
+  const T vp = std::clamp(std::abs(t), kStep, 1 - kStep);
   const bool upper = up + vp <= 1;
   const T r = upper ? up + vp : std::max(2 - up - vp, T(1e-6));
   const T phi = ((vp - up) / r + 1) * kPi<T> / 4;

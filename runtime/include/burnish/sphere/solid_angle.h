@@ -23,7 +23,8 @@ T triangle_solid_angle(Vector3<T> a, Vector3<T> b, Vector3<T> c) {
   else if (ca < ab)
     std::swap(b, c);
   const Vector3<T> sum = a + b;
-  const T triple = a.dot(b) < 0 ? a.cross(sum).dot(c) : (a - c).cross(b - c).dot(c);
+  const Vector3<T> from_near = a.dot(c) > b.dot(c) ? Vector3<T>(c - a) : Vector3<T>(c - b);
+  const T triple = a.dot(b) < 0 ? a.cross(sum).dot(from_near) : (a - c).cross(b - c).dot(c);
   return 2 * std::atan2(std::abs(triple), sum.dot(sum / 2 + c));
 }
 
