@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "burnish/sphere/asg_convolution.h"
 #include "burnish/sphere/asg_product.h"
 #include "support/quadrature.h"
 
@@ -18,6 +19,7 @@ namespace {
 constexpr unsigned kSeed = 20;
 constexpr float kMax = std::numeric_limits<float>::max();
 constexpr float kDenormal = std::numeric_limits<float>::denorm_min();
+constexpr double kDotError = 2e-7;  // of unit vectors: three roundings of terms of at most 1
 const std::vector<float> kExtremes = {0, kDenormal, 1e-8f, 1e-3f, 1, 1e3f, 1e8f, kMax};
 
 /// Restores the best instruction set whatever happens.
@@ -288,6 +290,7 @@ TEST_P(Batch, AsgInnerProductMatchesTheScalarForm) {
                                {10.0f, 1.0f},
                                {300.0f, 3.0f},
                                {1e8f, 1.0f},
+                               {1e16f, 1.0f},
                                {kMax, 1.0f},
                                {kMax, kMax}}) {
     const Vector3d axis = test::random_direction(random);
@@ -317,10 +320,16 @@ TEST_P(Batch, AsgInnerProductMatchesTheScalarForm) {
                                            a.amplitude};
       };
       const double truth = inner_product_closed_form(in_double(lobe), in_double(others[i]));
-      // A dot product errs by 3e-7; the exponent is at most the smaller lobe's, its bandwidth 200.
-      // The smooth factor errs by as much, absolutely. The largest value is 6 pi.
-      const double relative = 1e-5 + 2 * 200 * 3e-7;
-      EXPECT_NEAR(results[i], truth, relative * truth + 6 * kPi<double> * 1e-6)
+      // A dot product errs by 2e-7; the exponent is at most the smaller lobe's, its bandwidth 200.
+      // The smooth factor errs by as much, absolutely, in each of its two terms; without it, the
+      // product integrates to less than either lobe.
+      const double relative = 1e-5 + 2 * 200 * kDotError;
+      const double largest =
+          6 * std::min(asg_integral_exact<double>(bx, by),
+                       asg_integral_exact<double>(bandwidth_x[i], bandwidth_y[i]));
+      // Bandwidths whose products are below the range of floats leave the magnitude only.
+      const double absolute = bx / by > 1e30f ? 1 : 2 * kDotError;
+      EXPECT_NEAR(results[i], truth, relative * truth + largest * absolute)
           << bx << " " << by << " " << bandwidth_x[i] << " " << bandwidth_y[i] << ", seed "
           << kSeed;
       EXPECT_GE(results[i], 0);
@@ -429,6 +438,229 @@ TEST_P(Batch, MeanClampedCosineMatchesTheScalarForm) {
   }
 }
 
+TEST_P(Batch, ClampedCosineIntegralMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  for (const float sharpness : magnitudes(30, random)) {
+    const Vector3d axis = test::random_direction(random);
+    const PreparedClampedCosine<float> lobe =
+        prepare_clamped_cosine(SphericalGaussian<float>{axis.cast<float>(), sharpness, 3});
+    const PreparedClampedCosine<double> in_double = {lobe.axis.cast<double>(),
+                                                     lobe.slope,
+                                                     lobe.bump,
+                                                     lobe.spread,
+                                                     lobe.end,
+                                                     lobe.behind,
+                                                     lobe.mean};
+    DirectionArrays normals = directions_around(axis, 200, random);
+    // Where the horizon cuts the lobe.
+    for (int i = 0; i < 100; ++i) {
+      const Vector3d across = axis.cross(test::random_direction(random)).normalized();
+      normals.add((across + test::random_direction(random) * std::pow(10.0, -i % 6)).normalized());
+    }
+    std::vector<float> results(normals.x.size());
+    batch::clamped_cosine_integral(lobe, normals.spans(), results);
+    for (size_t i = 0; i < results.size(); ++i) {
+      const double truth =
+          clamped_cosine_integral(in_double, Vector3d(normals.at(i).cast<double>()));
+      // Three roundings of the dot product, and a few of terms of at most 1/2.
+      const double highest = double(lobe.behind) + lobe.mean;
+      ASSERT_NEAR(results[i], truth, 6e-7 * highest) << sharpness << ", seed " << kSeed;
+      ASSERT_GE(results[i], 0);
+    }
+  }
+}
+
+TEST_P(Batch, ConvolutionMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  std::vector<float> bandwidths_x, bandwidths_y, kernels;
+  for (const float x : magnitudes(20, random)) {
+    for (const float y : magnitudes(5, random)) {
+      for (const float sharpness : magnitudes(3, random)) {
+        bandwidths_x.push_back(x);
+        bandwidths_y.push_back(y);
+        kernels.push_back(sharpness);
+      }
+    }
+  }
+  const size_t size = kernels.size();
+  std::vector<float> x(size), y(size), amplitude(size);
+  const auto expect_near = [&](size_t i) {
+    const AnisotropicGaussian<double> lobe = {{}, bandwidths_x[i], bandwidths_y[i], 1};
+    const auto truth = convolve(lobe, SphericalGaussian<double>{Vector3d::UnitZ(), kernels[i], 1});
+    // Four roundings; those of the integral; denormals have fewer digits.
+    const double kLeast = 4 * double(kDenormal);
+    EXPECT_NEAR(x[i], truth.bandwidth_x, 4 * 6e-8 * truth.bandwidth_x + kLeast);
+    EXPECT_NEAR(y[i], truth.bandwidth_y, 4 * 6e-8 * truth.bandwidth_y + kLeast);
+    // Where a sum overflows, the form integrates the largest finite number.
+    const auto sum = [&](double bandwidth) {
+      return std::min(bandwidth + double(kernels[i]) / 2, double(kMax));
+    };
+    const double whole = asg_integral_exact(sum(bandwidths_x[i]), sum(bandwidths_y[i]));
+    EXPECT_NEAR(amplitude[i], whole, 1e-6 * whole + kLeast);
+    EXPECT_LE(truth.amplitude, whole * (1 + 1e-12));
+  };
+  batch::convolve(bandwidths_x, bandwidths_y, kernels, {x, y, amplitude});
+  for (size_t i = 0; i < size; ++i) {
+    expect_near(i);
+    ASSERT_FALSE(HasFailure()) << bandwidths_x[i] << " " << bandwidths_y[i] << " " << kernels[i]
+                               << ", seed " << kSeed;
+  }
+  for (const float sharpness : kExtremes) {
+    kernels.assign(size, sharpness);
+    batch::convolve(bandwidths_x, bandwidths_y, sharpness, {x, y, amplitude});
+    for (size_t i = 0; i < size; ++i) expect_near(i);
+    ASSERT_FALSE(HasFailure()) << sharpness << ", seed " << kSeed;
+  }
+}
+
+/// Owns what batch::WarpedLobes points to.
+struct WarpedArrays {
+  explicit WarpedArrays(size_t size) : all(10, std::vector<float>(size)) {}
+  batch::WarpedLobes spans() {
+    return {{all[0], all[1], all[2]}, {all[3], all[4], all[5]}, all[6], all[7], all[8], all[9]};
+  }
+  WarpedLobe<double> at(size_t i) const {
+    const Vector3d x(all[0][i], all[1][i], all[2][i]), z(all[3][i], all[4][i], all[5][i]);
+    return {{{x, z.cross(x), z}, all[6][i], all[7][i], all[8][i]}, all[9][i]};
+  }
+  std::vector<std::vector<float>> all;
+};
+
+/// The exponent's matrix: in contrast to the axes, it is well conditioned for round lobes, too.
+Eigen::Matrix3d exponent_matrix(const AnisotropicGaussian<double>& lobe) {
+  return lobe.bandwidth_x * lobe.frame.x * lobe.frame.x.transpose() +
+         lobe.bandwidth_y * lobe.frame.y * lobe.frame.y.transpose();
+}
+
+/// Half-vector frames, and views of them: all over the sphere, near the axis, near the horizon.
+struct Views {
+  DirectionArrays x, z, outgoing;
+  batch::Frames frames() const { return {x.spans(), z.spans()}; }
+  Frame<double> frame(size_t i) const {
+    const Vector3d fx = x.at(i).cast<double>(), fz = z.at(i).cast<double>();
+    return {fx, fz.cross(fx), fz};
+  }
+  double cosine(size_t i) const {
+    return z.at(i).cast<double>().dot(outgoing.at(i).cast<double>());
+  }
+};
+
+Views random_views(std::mt19937& random) {
+  Views views;
+  for (int i = 0; i < 400; ++i) {
+    const Vector3d axis = test::random_direction(random);
+    const Frame<double> frame = test::random_frame(axis, random);
+    const Vector3d noise = std::pow(10.0, -(i / 8) % 8) * test::random_direction(random);
+    views.x.add(frame.x);
+    views.z.add(axis);
+    const Vector3d start = i % 4 == 0 ? axis : i % 4 == 1 ? frame.x : i % 4 == 2 ? frame.y : noise;
+    views.outgoing.add((start + noise).normalized());
+  }
+  return views;
+}
+
+/// `relative`: of the bandwidths, and of the exponent's matrix for its larger bandwidth.
+void expect_warped(const WarpedLobe<double>& warped, const WarpedLobe<double>& truth,
+                   double axis_error, double relative) {
+  EXPECT_NEAR((warped.lobe.frame.z - truth.lobe.frame.z).norm(), 0, axis_error);
+  // Products of three numbers near 1, after as many roundings.
+  EXPECT_NEAR(warped.lobe.frame.x.norm(), 1, 6e-7);
+  EXPECT_NEAR(warped.lobe.frame.x.dot(warped.lobe.frame.z), 0, 6e-7);
+  const auto held = [](double bandwidth) { return std::min(bandwidth, double(kMax)); };
+  const double x = held(truth.lobe.bandwidth_x), y = truth.lobe.bandwidth_y;
+  EXPECT_NEAR(warped.lobe.bandwidth_x, x, relative * x + 4 * double(kDenormal));
+  EXPECT_NEAR(warped.lobe.bandwidth_y, y, relative * y + 4 * double(kDenormal));
+  if (truth.lobe.bandwidth_x < kMax && x > 1e-30) {
+    const Eigen::Matrix3d difference = exponent_matrix(warped.lobe) - exponent_matrix(truth.lobe);
+    EXPECT_LT((difference / x).norm(), relative + axis_error);
+  }
+  EXPECT_NEAR(warped.jacobian, truth.jacobian, 4 * kDotError + 2.4e-7);
+}
+
+TEST_P(Batch, WarpMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  const Views views = random_views(random);
+  const size_t size = views.x.x.size();
+  WarpedArrays results(size), each(size);
+  for (const float bandwidth_x : magnitudes(4, random)) {
+    for (const float bandwidth_y : magnitudes(4, random)) {
+      batch::warp_to_incoming(bandwidth_x, bandwidth_y, views.frames(), views.outgoing.spans(),
+                              results.spans());
+      const std::vector<float> bx(size, bandwidth_x), by(size, bandwidth_y), amplitude(size, 3);
+      batch::warp_to_incoming({views.x.spans(), views.z.spans(), bx, by, amplitude},
+                              views.outgoing.spans(), each.spans());
+      for (size_t i = 0; i < size; ++i) {
+        const WarpedLobe<double> truth = warp_to_incoming(
+            AnisotropicGaussian<double>{views.frame(i), bandwidth_x, bandwidth_y, 1},
+            Vector3d(views.outgoing.at(i).cast<double>()));
+        // Bandwidths go by 1 / c^2, and those of a long lobe by an angle over c; ten roundings.
+        const double c = std::max(views.cosine(i), kMinWarpCosine);
+        expect_warped(results.at(i), truth, 2 * kDotError, 1.2e-6 + 4 * kDotError / c);
+        if (std::abs(views.cosine(i)) > kDotError) {
+          EXPECT_EQ(results.all[8][i], truth.lobe.amplitude);
+        }
+        EXPECT_EQ(each.all[8][i], 3 * results.all[8][i]);
+        for (const size_t array : {0, 1, 2, 3, 4, 5, 6, 7, 9})
+          EXPECT_EQ(each.all[array][i], results.all[array][i]);
+        ASSERT_FALSE(HasFailure()) << bandwidth_x << " " << bandwidth_y << ", cosine "
+                                   << views.cosine(i) << ", seed " << kSeed;
+      }
+    }
+  }
+}
+
+TEST_P(Batch, MeanWarpMatchesTheScalarForm) {
+  std::mt19937 random(kSeed);
+  const Views views = random_views(random);
+  const size_t size = views.x.x.size();
+  WarpedArrays results(size);
+  for (const auto& [bandwidth_x, bandwidth_y] : {std::pair{0.0f, 0.0f},
+                                                 {kDenormal, 1e-8f},
+                                                 {1e-3f, 1e-8f},
+                                                 {1.0f, 1.0f},
+                                                 {4.0f, 50.0f},
+                                                 {800.0f, 8.0f},
+                                                 {1e3f, 1e3f},
+                                                 {1e8f, 1.0f},
+                                                 {1e8f, 1e8f},
+                                                 {kMax, 1e3f},
+                                                 {kMax, kMax}}) {
+    const LobeShape<float> shape = make_lobe_shape(bandwidth_x, bandwidth_y);
+    const LobeShape<double> shape_in_double = {shape.integral, shape.moments.cast<double>()};
+    batch::warp_mean_to_incoming(bandwidth_x, bandwidth_y, shape, views.frames(),
+                                 views.outgoing.spans(), results.spans());
+    for (size_t i = 0; i < size; ++i) {
+      for (const std::vector<float>& array : results.all) ASSERT_TRUE(std::isfinite(array[i]));
+      const Vector3d outgoing = views.outgoing.at(i).cast<double>();
+      const WarpedLobe<double> truth = warp_mean_to_incoming(
+          AnisotropicGaussian<double>{views.frame(i), bandwidth_x, bandwidth_y, 1}, shape_in_double,
+          outgoing);
+      const Vector3d o = views.frame(i).to_local(outgoing);
+      const LobeMoments<double>& m = shape_in_double.moments;
+      const double deviation = std::sqrt(o.x() * o.x() * m.mean_xx + o.y() * o.y() * m.mean_yy +
+                                         o.z() * o.z() * m.variance_z);
+      // Where most of the lobe is out of sight, the mean of what is left is a difference of numbers
+      // 20 times as large at 4 deviations, and its mean square one of numbers 16 times as large.
+      const double ratio = o.z() * m.mean_z / std::max(deviation, kDotError);
+      const double cut = ratio < -2 ? 20 * 16 : ratio < -1 ? 20 : 4;
+      // The view's azimuth, whose direction the form has even at the axis.
+      const double azimuth = kDotError / std::max(std::hypot(o.x(), o.y()), kDotError);
+      const double c = std::max(truth.jacobian / 4, kMinWarpCosine);
+      const double relative = cut * 1.2e-6 + 4 * kDotError / c + 4 * azimuth;
+      const double axis_error = 2 * kDotError + cut * kDotError;
+      expect_warped(results.at(i), truth, axis_error, relative);
+      if (truth.lobe.bandwidth_x < kMax) {
+        const double scale = double(shape.integral) /
+                             asg_integral_exact(truth.lobe.bandwidth_x, truth.lobe.bandwidth_y);
+        EXPECT_NEAR(results.all[8][i], truth.lobe.amplitude,
+                    scale * (4 * kDotError + 2.4e-7 + relative * truth.jacobian));
+      }
+      ASSERT_FALSE(HasFailure()) << bandwidth_x << " " << bandwidth_y << ", view " << o.transpose()
+                                 << ", ratio " << ratio << ", seed " << kSeed;
+    }
+  }
+}
+
 TEST_P(Batch, OctahedralMapMatchesTheScalarForm) {
   std::mt19937 random(kSeed);
   DirectionArrays directions;
@@ -466,9 +698,11 @@ TEST_P(Batch, AnyLengthAndAlignmentGivesTheSame) {
   const AnisotropicGaussian<float> asg = {{}, 5, 2, 1};
   const SphericalGaussian<float> sg;
   const LobeMoments<float> moments = asg_moments(5.0f, 2.0f);
+  const LobeShape<float> shape = make_lobe_shape(20.0f, 80.0f);
+  const PreparedClampedCosine<float> prepared = prepare_clamped_cosine(sg);
   using Span = std::span<const float>;
   using Call = std::function<void(Span, Span, Span, std::span<float>)>;
-  const std::vector<std::pair<const char*, Call>> calls = {
+  std::vector<std::pair<const char*, Call>> calls = {
       {"exp", [](Span, Span, Span z, auto out) { batch::exp(z, out); }},
       {"sg",
        [&](Span x, Span y, Span z, auto out) {
@@ -513,6 +747,10 @@ TEST_P(Batch, AnyLengthAndAlignmentGivesTheSame) {
        [&](Span x, Span y, Span z, auto out) {
          batch::mean_clamped_cosine(moments, Frame<float>(), {x, y, z}, out);
        }},
+      {"clamped cosine of an SG",
+       [&](Span x, Span y, Span z, auto out) {
+         batch::clamped_cosine_integral(prepared, {x, y, z}, out);
+       }},
       {"octahedral u",
        [&](Span x, Span y, Span z, auto out) {
          std::vector<float> v(out.size());
@@ -524,6 +762,47 @@ TEST_P(Batch, AnyLengthAndAlignmentGivesTheSame) {
          batch::direction_to_octahedral({x, y, z}, u, out);
        }},
   };
+  // Of those with several results, each in its turn; the others are of the exact length.
+  for (int result = 0; result < 3; ++result) {
+    calls.push_back({"convolution", [result](Span x, Span y, Span, auto out) {
+                       std::vector<float> rest[3];
+                       for (auto& array : rest) array.resize(out.size());
+                       std::span<float> all[3] = {rest[0], rest[1], rest[2]};
+                       all[result] = out;
+                       batch::convolve(x, y, 3, {all[0], all[1], all[2]});
+                     }});
+    calls.push_back({"convolution with each", [result](Span x, Span y, Span, auto out) {
+                       std::vector<float> rest[3];
+                       for (auto& array : rest) array.resize(out.size());
+                       std::span<float> all[3] = {rest[0], rest[1], rest[2]};
+                       all[result] = out;
+                       batch::convolve(x, y, y, {all[0], all[1], all[2]});
+                     }});
+  }
+  for (int result = 0; result < 10; ++result) {
+    const auto with_results = [result](std::span<float> out, auto call) {
+      WarpedArrays rest(out.size());
+      std::vector<std::span<float>> all(rest.all.begin(), rest.all.end());
+      all[result] = out;
+      call({{all[0], all[1], all[2]}, {all[3], all[4], all[5]}, all[6], all[7], all[8], all[9]});
+    };
+    calls.push_back({"warp", [=](Span x, Span y, Span z, auto out) {
+                       with_results(out, [&](const batch::WarpedLobes& all) {
+                         batch::warp_to_incoming(5, 2, {{x, y, z}, {y, x, z}}, {z, y, x}, all);
+                       });
+                     }});
+    calls.push_back({"warp of each", [=](Span x, Span y, Span z, auto out) {
+                       with_results(out, [&](const batch::WarpedLobes& all) {
+                         batch::warp_to_incoming({{x, y, z}, {y, x, z}, x, y, y}, {z, y, x}, all);
+                       });
+                     }});
+    calls.push_back(
+        {"mean warp", [=](Span x, Span y, Span z, auto out) {
+           with_results(out, [&](const batch::WarpedLobes& all) {
+             batch::warp_mean_to_incoming(20, 80, shape, {{x, y, z}, {y, x, z}}, {z, y, x}, all);
+           });
+         }});
+  }
   for (const auto& [name, call] : calls) {
     call(a, b, c, whole);
     for (size_t start = 0; start < 4; ++start) {
@@ -570,6 +849,11 @@ TEST_P(Batch, NaNAndInfinityDoNotHang) {
     batch::mean_clamped_cosine(LobeMoments<float>(), Frame<float>(), {x, x, x}, results);
     std::vector<float> more(20);
     batch::direction_to_octahedral({x, x, x}, results, more);
+    batch::clamped_cosine_integral({}, {x, x, x}, results);
+    batch::convolve(x, x, x, {results, more, more});
+    WarpedArrays warped(20);
+    batch::warp_to_incoming({{x, x, x}, {x, x, x}, x, x, x}, {x, x, x}, warped.spans());
+    batch::warp_mean_to_incoming(1, 1, {}, {{x, x, x}, {x, x, x}}, {x, x, x}, warped.spans());
   }
 }
 

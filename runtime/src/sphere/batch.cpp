@@ -81,6 +81,27 @@ void sg_integral_batch(size_t size, const float* sharpness, float* results) {
       sharpness);
 }
 
+HWY_INLINE Values<3> values(const ConvolvedLobe<V>& lobe) {
+  return {{lobe.bandwidth_x, lobe.bandwidth_y, lobe.amplitude}};
+}
+
+void convolve_batch(size_t size, const float* bandwidths_x, const float* bandwidths_y,
+                    float kernel_sharpness, float* const (&results)[3]) {
+  const D d;
+  const V sharpness = hn::Set(d, kernel_sharpness);
+  for_each_several(
+      size, results, [&](D d, V x, V y) HWY_ATTR { return values(convolve(d, x, y, sharpness)); },
+      bandwidths_x, bandwidths_y);
+}
+
+void convolve_pairs_batch(size_t size, const float* bandwidths_x, const float* bandwidths_y,
+                          const float* kernels_sharpness, float* const (&results)[3]) {
+  for_each_several(
+      size, results,
+      [](D d, V x, V y, V sharpness) HWY_ATTR { return values(convolve(d, x, y, sharpness)); },
+      bandwidths_x, bandwidths_y, kernels_sharpness);
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace burnish
@@ -97,6 +118,8 @@ HWY_EXPORT(directional_bandwidth_batch);
 HWY_EXPORT(hemisphere_batch);
 HWY_EXPORT(hemisphere_exact_batch);
 HWY_EXPORT(sg_integral_batch);
+HWY_EXPORT(convolve_batch);
+HWY_EXPORT(convolve_pairs_batch);
 
 namespace batch {
 
@@ -143,6 +166,23 @@ void visible_fraction_hemisphere(std::span<const float> sharpness, std::span<con
 
 void sg_integral(std::span<const float> sharpness, std::span<float> results) noexcept {
   HWY_DYNAMIC_DISPATCH(sg_integral_batch)(results.size(), sharpness.data(), results.data());
+}
+
+void convolve(std::span<const float> bandwidths_x, std::span<const float> bandwidths_y,
+              float kernel_sharpness, const ConvolvedLobes& results) noexcept {
+  float* const arrays[] = {results.bandwidth_x.data(), results.bandwidth_y.data(),
+                           results.amplitude.data()};
+  HWY_DYNAMIC_DISPATCH(convolve_batch)
+  (results.amplitude.size(), bandwidths_x.data(), bandwidths_y.data(), kernel_sharpness, arrays);
+}
+
+void convolve(std::span<const float> bandwidths_x, std::span<const float> bandwidths_y,
+              std::span<const float> kernels_sharpness, const ConvolvedLobes& results) noexcept {
+  float* const arrays[] = {results.bandwidth_x.data(), results.bandwidth_y.data(),
+                           results.amplitude.data()};
+  HWY_DYNAMIC_DISPATCH(convolve_pairs_batch)
+  (results.amplitude.size(), bandwidths_x.data(), bandwidths_y.data(), kernels_sharpness.data(),
+   arrays);
 }
 
 std::vector<std::string_view> instruction_sets() {

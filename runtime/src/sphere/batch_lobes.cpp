@@ -135,12 +135,30 @@ void mean_clamped_cosine_batch(const burnish::LobeMoments<float>& moments, const
       x, y, z);
 }
 
+void clamped_cosine_integral_batch(const burnish::PreparedClampedCosine<float>& prepared,
+                                   size_t size, const float* x, const float* y, const float* z,
+                                   float* results) {
+  const D d;
+  const PreparedClampedCosine<V> lobe = {hn::Set(d, prepared.slope),  hn::Set(d, prepared.bump),
+                                         hn::Set(d, prepared.spread), hn::Set(d, prepared.end),
+                                         hn::Set(d, prepared.behind), hn::Set(d, prepared.mean)};
+  const Vector3<V> axis = set(d, prepared.axis.data());
+  for_each(
+      size, results,
+      [&](D d, V x, V y, V z) HWY_ATTR {
+        return clamped_cosine_integral(d, lobe, dot(axis, Vector3<V>{x, y, z}));
+      },
+      x, y, z);
+}
+
 void octahedral_batch(size_t size, const float* x, const float* y, const float* z, float* u,
                       float* v) {
-  for_each_two(
-      size, u, v,
+  float* const results[] = {u, v};
+  for_each_several(
+      size, results,
       [](D d, V x, V y, V z) HWY_ATTR {
-        return direction_to_octahedral(d, Vector3<V>{x, y, z});
+        const Vector2<V> point = direction_to_octahedral(d, Vector3<V>{x, y, z});
+        return Values<2>{{point.x, point.y}};
       },
       x, y, z);
 }
@@ -160,6 +178,7 @@ HWY_EXPORT(sg_inner_product_batch);
 HWY_EXPORT(asg_inner_product_batch);
 HWY_EXPORT(dot_batch);
 HWY_EXPORT(mean_clamped_cosine_batch);
+HWY_EXPORT(clamped_cosine_integral_batch);
 HWY_EXPORT(octahedral_batch);
 
 namespace batch {
@@ -253,6 +272,12 @@ void mean_clamped_cosine(const LobeMoments<float>& moments, const Frame<float>& 
   HWY_DYNAMIC_DISPATCH(mean_clamped_cosine_batch)
   (moments, FrameArray(frame).axes, results.size(), normals.x.data(), normals.y.data(),
    normals.z.data(), results.data());
+}
+
+void clamped_cosine_integral(const PreparedClampedCosine<float>& lobe, const Directions& normals,
+                             std::span<float> results) noexcept {
+  HWY_DYNAMIC_DISPATCH(clamped_cosine_integral_batch)
+  (lobe, results.size(), normals.x.data(), normals.y.data(), normals.z.data(), results.data());
 }
 
 void direction_to_octahedral(const Directions& directions, std::span<float> u,

@@ -40,17 +40,22 @@ HWY_INLINE void for_each(size_t size, float* results, const Kernel& kernel,
   std::memcpy(results + i, buffer, (size - i) * sizeof(float));
 }
 
-/// As for_each, for kernels that return an x and a y.
-template <class Kernel, class... Inputs>
-HWY_INLINE void for_each_two(size_t size, float* results_x, float* results_y, const Kernel& kernel,
-                             const Inputs*... inputs) {
+/// What a kernel with several results returns: one vector for each array of results.
+template <int N>
+struct Values {
+  V value[N];
+};
+
+/// As for_each, for kernels that return Values.
+template <int N, class Kernel, class... Inputs>
+HWY_INLINE void for_each_several(size_t size, float* const (&results)[N], const Kernel& kernel,
+                                 const Inputs*... inputs) {
   const D d;
   const size_t lanes = hn::Lanes(d);
   size_t i = 0;
   for (; i + lanes <= size; i += lanes) {
-    const auto value = kernel(d, hn::LoadU(d, inputs + i)...);
-    hn::StoreU(value.x, d, results_x + i);
-    hn::StoreU(value.y, d, results_y + i);
+    const Values<N> values = kernel(d, hn::LoadU(d, inputs + i)...);
+    for (int k = 0; k < N; ++k) hn::StoreU(values.value[k], d, results[k] + i);
   }
   if (i == size) return;
   HWY_ALIGN float buffer[hn::MaxLanes(d)] = {};
@@ -58,11 +63,11 @@ HWY_INLINE void for_each_two(size_t size, float* results_x, float* results_y, co
     std::memcpy(buffer, input + i, (size - i) * sizeof(float));
     return hn::Load(d, buffer);
   };
-  const auto value = kernel(d, load_rest(inputs)...);
-  hn::Store(value.x, d, buffer);
-  std::memcpy(results_x + i, buffer, (size - i) * sizeof(float));
-  hn::Store(value.y, d, buffer);
-  std::memcpy(results_y + i, buffer, (size - i) * sizeof(float));
+  const Values<N> values = kernel(d, load_rest(inputs)...);
+  for (int k = 0; k < N; ++k) {
+    hn::Store(values.value[k], d, buffer);
+    std::memcpy(results[k] + i, buffer, (size - i) * sizeof(float));
+  }
 }
 
 }  // namespace HWY_NAMESPACE

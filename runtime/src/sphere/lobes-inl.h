@@ -8,6 +8,8 @@
 #define BURNISH_SPHERE_LOBES_INL_H_
 #endif
 
+#include <limits>
+
 #include <hwy/highway.h>
 
 #include "sphere/vector_math-inl.h"
@@ -15,6 +17,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace burnish {
 namespace HWY_NAMESPACE {
+
+template <class V>
+struct Vector2 {
+  V x, y;
+};
 
 template <class V>
 struct Vector3 {
@@ -88,29 +95,48 @@ HWY_INLINE V asg_integral_fast(D d, V bandwidth_x, V bandwidth_y) {
   return hn::Min(hn::Div(pi, hn::Mul(hn::Sqrt(bandwidth_x), hn::Sqrt(bandwidth_y))), pi);
 }
 
-/// asg_integral_exact, with 7 midpoints for all bandwidths: relative error 1e-6.
+/// asg_integral_exact is pi mean / root, see burnish/sphere/asg_integral.h.
+template <class V>
+struct AsgIntegralParts {
+  V mean, root;
+};
+
+/// With 7 midpoints: the quotient's relative error is 1e-6.
 template <class D, class V>
-HWY_INLINE V asg_integral_exact(D d, V bandwidth_x, V bandwidth_y) {
-  constexpr float kOffset = 12.5f;
+HWY_INLINE AsgIntegralParts<V> asg_integral_parts(D d, V bandwidth_x, V bandwidth_y) {
   constexpr int kPoints = 7;
   // cos^2((i + 1/2) / 7 pi / 2)
   constexpr float kCosineSquared[kPoints] = {0.987463956f, 0.890915742f, 0.716941870f, 0.5f,
                                              0.283058130f, 0.109084258f, 0.0125360439f};
-  const V offset = hn::Set(d, kOffset), one = hn::Set(d, 1.0f);
+  const V one = hn::Set(d, 1.0f);
   const V large = hn::Max(bandwidth_x, bandwidth_y), small = hn::Min(bandwidth_x, bandwidth_y);
+  // Lobes that the disc's edge does not cut: the whole plane's integral.
+  const auto is_whole = hn::Gt(small, hn::Set(d, 17.0f));
+  const V offset = hn::IfThenZeroElse(is_whole, hn::Set(d, 12.5f));
   const V large_offset = hn::Add(large, offset), small_offset = hn::Add(small, offset);
+  const V roots = hn::Mul(hn::Sqrt(large_offset), hn::Sqrt(small_offset));
+  if (hn::AllTrue(d, is_whole)) return {one, roots};  // common, and many times as fast
   const V squeeze = hn::Div(small_offset, large_offset);
+  const V squeezed = hn::Mul(large, squeeze);  // at most 29.5 where the lobe is not whole
   V sum = hn::Zero(d);
   for (const float cosine_squared : kCosineSquared) {
     const V c = hn::Set(d, cosine_squared), s = hn::Set(d, 1 - cosine_squared);
-    const V x = hn::Mul(squeeze, c);
-    // k = (large x + small s) / (x + s): the fraction of x first, so that nothing overflows.
-    const V scale = hn::Div(one, hn::Add(x, s));
-    const V k = hn::MulAdd(large, hn::Mul(x, scale), hn::Mul(small, hn::Mul(s, scale)));
-    sum = hn::MulAdd(hn::Add(k, offset), one_minus_exp_over(d, k), sum);
+    // k = n / m, kept from 0 by less than shows; it and 1 / k with one division.
+    const V n = hn::Max(hn::MulAdd(squeezed, c, hn::Mul(small, s)), hn::Set(d, 1e-12f));
+    const V m = hn::MulAdd(squeeze, c, s);
+    const V inverse = hn::Div(one, hn::Mul(n, m));
+    const V k = hn::Mul(n, hn::Mul(n, inverse)), inverse_k = hn::Mul(m, hn::Mul(m, inverse));
+    sum = hn::MulAdd(hn::MulAdd(offset, inverse_k, one), one_minus_exp(d, k), sum);
   }
-  const V roots = hn::Mul(hn::Sqrt(large_offset), hn::Sqrt(small_offset));
-  return hn::Div(hn::Mul(hn::Set(d, 3.14159265f / kPoints), sum), roots);
+  const V mean = hn::Mul(sum, hn::Set(d, 1.0f / kPoints));
+  return {hn::IfThenElse(is_whole, one, mean), roots};
+}
+
+/// asg_integral_exact.
+template <class D, class V>
+HWY_INLINE V asg_integral_exact(D d, V bandwidth_x, V bandwidth_y) {
+  const AsgIntegralParts<V> parts = asg_integral_parts(d, bandwidth_x, bandwidth_y);
+  return hn::Div(hn::Mul(hn::Set(d, 3.14159265f), parts.mean), parts.root);
 }
 
 /// An ASG of unit amplitude.
@@ -210,10 +236,48 @@ HWY_INLINE V mean_clamped_cosine(D d, const LobeMoments<V>& m, const Vector3<V>&
   return hn::IfThenElse(hn::Lt(hn::Abs(r), six), held, hn::Max(mean, zero));
 }
 
+/// PreparedClampedCosine without its axis, in all lanes.
 template <class V>
-struct Vector2 {
-  V x, y;
+struct PreparedClampedCosine {
+  V slope, bump, spread, end, behind, mean;
 };
+
+/// clamped_cosine_integral for a normal of this `cosine` with the axis.
+template <class D, class V>
+HWY_INLINE V clamped_cosine_integral(D d, const PreparedClampedCosine<V>& lobe, V cosine) {
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+  const V c = hn::Max(hn::Min(cosine, one), hn::Neg(one)), size = hn::Abs(c);
+  const V rest = hn::NegMulAdd(c, c, one);
+  const V x = hn::Mul(lobe.slope, size), square = hn::Mul(x, x);
+  const V slope_rest = hn::Mul(lobe.slope, rest);
+  const V gap = hn::Mul(hn::Mul(hn::Set(d, 0.282094792f), slope_rest),
+                        one_minus_exp_over(d, hn::Mul(lobe.slope, slope_rest)));
+  const V bump = hn::Mul(hn::Mul(lobe.bump, rest), hn::MulAdd(lobe.spread, square, one));
+  const V middle = hn::Mul(exp(d, hn::Neg(square)), hn::Add(gap, bump));
+  const V sides = hn::Mul(hn::Set(d, 0.5f), hn::NegMulAdd(size, erfc(d, x), lobe.end));
+  const V even = hn::Max(hn::Add(sides, middle), zero);
+  return hn::MulAdd(lobe.mean, hn::Add(hn::Max(c, zero), even), lobe.behind);
+}
+
+template <class V>
+struct ConvolvedLobe {
+  V bandwidth_x, bandwidth_y, amplitude;
+};
+
+/// convolve of an ASG and an SG of unit amplitudes.
+template <class D, class V>
+HWY_INLINE ConvolvedLobe<V> convolve(D d, V bandwidth_x, V bandwidth_y, V sharpness) {
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d), nu = hn::Mul(hn::Set(d, 0.5f), sharpness);
+  const V largest = hn::Set(d, std::numeric_limits<float>::max());
+  // a nu / (a + nu), without overflow.
+  const auto blurred = [&](V a) HWY_ATTR {
+    const V low = hn::Min(a, nu), high = hn::Max(a, nu);
+    return hn::IfThenElseZero(hn::Gt(low, zero), hn::Div(low, hn::Add(one, hn::Div(low, high))));
+  };
+  return {blurred(bandwidth_x), blurred(bandwidth_y),
+          asg_integral_exact(d, hn::Min(hn::Add(bandwidth_x, nu), largest),
+                             hn::Min(hn::Add(bandwidth_y, nu), largest))};
+}
 
 /// direction_to_octahedral.
 template <class D, class V>

@@ -9,7 +9,9 @@
 #include "burnish/sphere/half_space.h"
 #include "burnish/sphere/lobe_moments.h"
 #include "burnish/sphere/octahedral_map.h"
+#include "burnish/sphere/sg_clamped_cosine.h"
 #include "burnish/sphere/spherical_gaussian.h"
+#include "burnish/sphere/spherical_warp.h"
 
 /// The operators of burnish/sphere/ over many lobes or directions at once, in float, by the widest
 /// instructions the processor has (chosen at the first call). Each is the scalar form of the same
@@ -26,7 +28,10 @@ struct Directions {
   std::span<const float> x, y, z;
 };
 
-/// Lobes, as structures of arrays. A frame's y is z x x.
+/// Frames and lobes, as structures of arrays. A frame's y is z x x.
+struct Frames {
+  Directions x, z;
+};
 struct SphericalGaussians {
   Directions axis;
   std::span<const float> sharpness, amplitude;
@@ -34,6 +39,18 @@ struct SphericalGaussians {
 struct AnisotropicGaussians {
   Directions x, z;
   std::span<const float> bandwidth_x, bandwidth_y, amplitude;
+};
+
+/// Results of several arrays.
+struct DirectionResults {
+  std::span<float> x, y, z;
+};
+struct WarpedLobes {
+  DirectionResults x, z;
+  std::span<float> bandwidth_x, bandwidth_y, amplitude, jacobian;
+};
+struct ConvolvedLobes {
+  std::span<float> bandwidth_x, bandwidth_y, amplitude;
 };
 
 /// results[i] = exp(x[i]) for x <= 88: 2e-7 relative.
@@ -70,7 +87,8 @@ void inner_product(const SphericalGaussian<float>& lobe, const SphericalGaussian
                    std::span<float> results) noexcept;
 
 /// inner_product_closed_form of one lobe with each of many. Relative error 1e-5 (1 + e), and that
-/// of the dot products: b * 2e-7 in an exponent of bandwidth b.
+/// of the dot products: b * 2e-7 in an exponent of bandwidth b, and 4e-7 of the smaller lobe's
+/// integral. Between bandwidths that differ by more than 1e30, the magnitude only.
 void inner_product(const AnisotropicGaussian<float>& lobe, const AnisotropicGaussians& others,
                    std::span<float> results) noexcept;
 
@@ -95,6 +113,35 @@ void directional_bandwidth(std::span<const float> bandwidths_x, std::span<const 
 /// Absolute error 2e-6.
 void mean_clamped_cosine(const LobeMoments<float>& moments, const Frame<float>& frame,
                          const Directions& normals, std::span<float> results) noexcept;
+
+/// The light of one SG onto surfaces of many normals. Absolute error 1e-6 of the value for a normal
+/// along its axis.
+void clamped_cosine_integral(const PreparedClampedCosine<float>& lobe, const Directions& normals,
+                             std::span<float> results) noexcept;
+
+/// ASGs convolved with SGs, for unit amplitudes of both, with one kernel or a kernel each; frames
+/// stay as they are. 1e-6 relative.
+void convolve(std::span<const float> bandwidths_x, std::span<const float> bandwidths_y,
+              float kernel_sharpness, const ConvolvedLobes& results) noexcept;
+void convolve(std::span<const float> bandwidths_x, std::span<const float> bandwidths_y,
+              std::span<const float> kernels_sharpness, const ConvolvedLobes& results) noexcept;
+
+/// Half-vector lobes as lobes over incoming directions, for the unit view outgoing[i] of each: of
+/// one material's bandwidths, amplitudes being factors for its lobe's; or a lobe each. Error 4e-7 of
+/// the axis, 1e-6 of the jacobian, 1e-6 + 8e-7 / c relative of the bandwidths, c the cosine of view
+/// and axis, at least .01.
+void warp_to_incoming(float bandwidth_x, float bandwidth_y, const Frames& half_frames,
+                      const Directions& outgoing, const WarpedLobes& results) noexcept;
+void warp_to_incoming(const AnisotropicGaussians& half_lobes, const Directions& outgoing,
+                      const WarpedLobes& results) noexcept;
+
+/// The mean form; `shape` is that of the bandwidths. The same errors while the mean of o.h is above
+/// 0, with c = jacobian / 4; bandwidths err by 1e-4 where it is 2 deviations below, 6e-4 at 4.
+/// Besides, they follow the view's azimuth about the half-vector axis, which has no digits for a
+/// view within 1e-6 of it.
+void warp_mean_to_incoming(float bandwidth_x, float bandwidth_y, const LobeShape<float>& shape,
+                           const Frames& half_frames, const Directions& outgoing,
+                           const WarpedLobes& results) noexcept;
 
 /// Points of the unit square, to 2e-7.
 void direction_to_octahedral(const Directions& directions, std::span<float> u,

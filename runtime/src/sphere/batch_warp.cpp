@@ -1,0 +1,116 @@
+#include <cstddef>
+
+#include "burnish/sphere/batch.h"
+#include "sphere/simd.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "sphere/batch_warp.cpp"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+#include "sphere/for_each-inl.h"
+#include "sphere/warp-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace burnish {
+namespace HWY_NAMESPACE {
+namespace {
+
+using WarpedValues = Values<10>;
+
+HWY_INLINE WarpedValues values(const WarpedLobe<V>& warped) {
+  return {{warped.x.x, warped.x.y, warped.x.z, warped.z.x, warped.z.y, warped.z.z,
+           warped.bandwidth_x, warped.bandwidth_y, warped.amplitude, warped.jacobian}};
+}
+
+/// kernel(d, frame, outgoing, more...) for every item.
+template <class Kernel, class... More>
+HWY_INLINE void for_each_view(const batch::Directions& x, const batch::Directions& z,
+                              const batch::Directions& outgoing, const batch::WarpedLobes& results,
+                              const Kernel& kernel, const More*... more) {
+  float* const arrays[] = {results.x.x.data(),         results.x.y.data(),
+                           results.x.z.data(),         results.z.x.data(),
+                           results.z.y.data(),         results.z.z.data(),
+                           results.bandwidth_x.data(), results.bandwidth_y.data(),
+                           results.amplitude.data(),   results.jacobian.data()};
+  for_each_several(
+      results.jacobian.size(), arrays,
+      [&](D d, V xx, V xy, V xz, V zx, V zy, V zz, V ox, V oy, V oz, auto... more) HWY_ATTR {
+        const Vector3<V> fx = {xx, xy, xz}, fz = {zx, zy, zz};
+        return values(kernel(d, Frame<V>{fx, cross(fz, fx), fz}, Vector3<V>{ox, oy, oz}, more...));
+      },
+      x.x.data(), x.y.data(), x.z.data(), z.x.data(), z.y.data(), z.z.data(), outgoing.x.data(),
+      outgoing.y.data(), outgoing.z.data(), more...);
+}
+
+void warp_batch(float bandwidth_x, float bandwidth_y, const batch::Frames& frames,
+                const batch::Directions& outgoing, const batch::WarpedLobes& results) {
+  const D d;
+  const V all_x = hn::Set(d, bandwidth_x), all_y = hn::Set(d, bandwidth_y);
+  for_each_view(frames.x, frames.z, outgoing, results,
+                [&](D d, const Frame<V>& half, const Vector3<V>& o)
+                    HWY_ATTR { return warp_to_incoming(d, half, all_x, all_y, o); });
+}
+
+void warp_lobes_batch(const batch::AnisotropicGaussians& half_lobes,
+                      const batch::Directions& outgoing, const batch::WarpedLobes& results) {
+  for_each_view(
+      half_lobes.x, half_lobes.z, outgoing, results,
+      [](D d, const Frame<V>& half, const Vector3<V>& o, V bandwidth_x, V bandwidth_y, V amplitude)
+          HWY_ATTR {
+            WarpedLobe<V> warped = warp_to_incoming(d, half, bandwidth_x, bandwidth_y, o);
+            warped.amplitude = hn::Mul(amplitude, warped.amplitude);
+            return warped;
+          },
+      half_lobes.bandwidth_x.data(), half_lobes.bandwidth_y.data(), half_lobes.amplitude.data());
+}
+
+void warp_mean_batch(float bandwidth_x, float bandwidth_y,
+                     const burnish::LobeShape<float>& half_shape, const batch::Frames& frames,
+                     const batch::Directions& outgoing, const batch::WarpedLobes& results) {
+  const D d;
+  const V all_x = hn::Set(d, bandwidth_x), all_y = hn::Set(d, bandwidth_y);
+  const auto& m = half_shape.moments;
+  const LobeShape<V> shape = {hn::Set(d, half_shape.integral), hn::Set(d, m.mean_z),
+                              hn::Set(d, m.mean_xx),           hn::Set(d, m.mean_yy),
+                              hn::Set(d, m.variance_z),        hn::Set(d, m.mean_xxz),
+                              hn::Set(d, m.mean_yyz),          hn::Set(d, m.mean_zzz)};
+  for_each_view(frames.x, frames.z, outgoing, results,
+                [&](D d, const Frame<V>& half, const Vector3<V>& o)
+                    HWY_ATTR { return warp_mean_to_incoming(d, half, all_x, all_y, shape, o); });
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace burnish
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace burnish {
+
+HWY_EXPORT(warp_batch);
+HWY_EXPORT(warp_lobes_batch);
+HWY_EXPORT(warp_mean_batch);
+
+namespace batch {
+
+void warp_to_incoming(float bandwidth_x, float bandwidth_y, const Frames& half_frames,
+                      const Directions& outgoing, const WarpedLobes& results) noexcept {
+  HWY_DYNAMIC_DISPATCH(warp_batch)(bandwidth_x, bandwidth_y, half_frames, outgoing, results);
+}
+
+void warp_to_incoming(const AnisotropicGaussians& half_lobes, const Directions& outgoing,
+                      const WarpedLobes& results) noexcept {
+  HWY_DYNAMIC_DISPATCH(warp_lobes_batch)(half_lobes, outgoing, results);
+}
+
+void warp_mean_to_incoming(float bandwidth_x, float bandwidth_y, const LobeShape<float>& shape,
+                           const Frames& half_frames, const Directions& outgoing,
+                           const WarpedLobes& results) noexcept {
+  HWY_DYNAMIC_DISPATCH(warp_mean_batch)
+  (bandwidth_x, bandwidth_y, shape, half_frames, outgoing, results);
+}
+
+}  // namespace batch
+}  // namespace burnish
+#endif

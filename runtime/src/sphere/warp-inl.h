@@ -1,0 +1,245 @@
+// The warps of burnish/sphere/spherical_warp.h on vectors of float: one lobe a lane. A structure of
+// vectors is named as its scalar counterpart.
+
+#if defined(BURNISH_SPHERE_WARP_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef BURNISH_SPHERE_WARP_INL_H_
+#undef BURNISH_SPHERE_WARP_INL_H_
+#else
+#define BURNISH_SPHERE_WARP_INL_H_
+#endif
+
+#include <limits>
+
+#include <hwy/highway.h>
+
+#include "sphere/lobes-inl.h"
+#include "sphere/vector_math-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace burnish {
+namespace HWY_NAMESPACE {
+
+template <class V>
+struct Frame {
+  Vector3<V> x, y, z;
+};
+
+template <class V>
+HWY_INLINE Vector3<V> to_local(const Frame<V>& frame, const Vector3<V>& v) {
+  return {dot(v, frame.x), dot(v, frame.y), dot(v, frame.z)};
+}
+
+template <class V>
+HWY_INLINE V weighted_sum(V a, V wa, V b, V wb, V c, V wc) {
+  return hn::MulAdd(a, wa, hn::MulAdd(b, wb, hn::Mul(c, wc)));
+}
+
+template <class V>
+HWY_INLINE Vector3<V> to_world(const Frame<V>& frame, const Vector3<V>& v) {
+  return {weighted_sum(frame.x.x, v.x, frame.y.x, v.y, frame.z.x, v.z),
+          weighted_sum(frame.x.y, v.x, frame.y.y, v.y, frame.z.y, v.z),
+          weighted_sum(frame.x.z, v.x, frame.y.z, v.y, frame.z.z, v.z)};
+}
+
+/// bandwidth_x and bandwidth_y of internal::WarpedAxes. The axis of the larger one has the
+/// components (cosine, sine) / sqrt(length_squared).
+template <class V>
+struct WarpedAxes {
+  V bandwidth_x, bandwidth_y;
+  V cosine, sine, length_squared;
+};
+
+/// internal::warped_axes. Divisions and roots, of which it has four, are most of the cost.
+template <class D, class V>
+HWY_INLINE WarpedAxes<V> warped_axes(D d, V bandwidth_x, V bandwidth_y, V aa, V bb, V ab, V c) {
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d), half = hn::Set(d, 0.5f);
+  const V large = hn::Max(bandwidth_x, bandwidth_y), small = hn::Min(bandwidth_x, bandwidth_y);
+  const V ratio = hn::IfThenElse(hn::Gt(large, zero), hn::Div(small, large), one);
+  const auto x_is_narrow = hn::Ge(bandwidth_x, bandwidth_y);
+  const V lambda = hn::IfThenElse(x_is_narrow, one, ratio);
+  const V mu = hn::IfThenElse(x_is_narrow, ratio, one);
+  // The matrix times 4 c^2.
+  const V cc = hn::Mul(c, c);
+  const V m_xx = hn::MulAdd(lambda, aa, hn::Mul(mu, bb));
+  const V m_xy = hn::Mul(hn::Sub(mu, lambda), hn::Mul(ab, c));
+  const V m_yy = hn::Mul(cc, hn::MulAdd(lambda, bb, hn::Mul(mu, aa)));
+  const V half_difference = hn::Mul(half, hn::Sub(m_xx, m_yy));
+  const V radius = hn::Sqrt(hn::MulAdd(half_difference, half_difference, hn::Mul(m_xy, m_xy)));
+  const V larger = hn::MulAdd(half, hn::Add(m_xx, m_yy), radius);
+  // 1 / larger and 1 / c^2 with one division.
+  const V inverse = hn::Div(hn::Set(d, 0.25f), hn::Mul(larger, cc));
+  WarpedAxes<V> result;
+  result.bandwidth_x = hn::Min(hn::Mul(large, hn::Mul(larger, hn::Mul(larger, inverse))),
+                               hn::Set(d, std::numeric_limits<float>::max()));
+  result.bandwidth_y = hn::Mul(small, hn::Mul(cc, inverse));
+  // The eigenvector is along (radius + half_difference, m_xy), or, where that would cancel,
+  // (m_xy, radius - half_difference). `larger` is at least 5e-5: a lobe of this radius is round.
+  const auto is_round = hn::Lt(radius, hn::Set(d, 1e-12f));
+  const V longer = hn::IfThenElse(is_round, one, hn::Add(radius, hn::Abs(half_difference)));
+  const V shorter = hn::IfThenZeroElse(is_round, m_xy);
+  const auto along_x = hn::Or(hn::Ge(half_difference, zero), is_round);
+  result.cosine = hn::IfThenElse(along_x, longer, hn::Abs(shorter));
+  result.sine = hn::IfThenElse(along_x, shorter, hn::CopySign(longer, m_xy));
+  result.length_squared = hn::IfThenElse(is_round, one, hn::Mul(hn::Add(radius, radius), longer));
+  return result;
+}
+
+/// x' of internal::across_view, not normalised, whose z is 0; and products of its components if it
+/// were.
+template <class V>
+struct AcrossView {
+  V x, y, length_squared;
+  V xx, yy, xy;
+};
+
+template <class D, class V>
+HWY_INLINE AcrossView<V> across_view(D d, const Vector3<V>& local_outgoing) {
+  const V x = local_outgoing.x, y = local_outgoing.y, one = hn::Set(d, 1.0f);
+  const V xx = hn::Mul(x, x), yy = hn::Mul(y, y), square = hn::Add(xx, yy);
+  // x' is then orthogonal to the lobe's axis to rounding.
+  const auto is_axis = hn::Lt(square, hn::Set(d, 1e-14f));
+  AcrossView<V> across;
+  across.x = hn::IfThenElse(is_axis, one, hn::Neg(y));
+  across.y = hn::IfThenZeroElse(is_axis, x);
+  across.length_squared = hn::IfThenElse(is_axis, one, square);
+  const V inverse = hn::Div(one, across.length_squared);
+  across.xx = hn::IfThenElse(is_axis, one, hn::Mul(yy, inverse));
+  across.yy = hn::IfThenZeroElse(is_axis, hn::Mul(xx, inverse));
+  across.xy = hn::IfThenZeroElse(is_axis, hn::Neg(hn::Mul(hn::Mul(x, y), inverse)));
+  return across;
+}
+
+/// The unit axis of the larger bandwidth. x and y: x' and z x x', of the squared length
+/// `length_squared`.
+template <class D, class V>
+HWY_INLINE Vector3<V> warped_x(D d, const WarpedAxes<V>& axes, const Vector3<V>& x,
+                               const Vector3<V>& y, V length_squared) {
+  // Its roots are above 1e-19.
+  const V scale = hn::Div(hn::Set(d, 1.0f), hn::Sqrt(hn::Mul(axes.length_squared, length_squared)));
+  const V cosine = hn::Mul(axes.cosine, scale), sine = hn::Mul(axes.sine, scale);
+  return {hn::MulAdd(cosine, x.x, hn::Mul(sine, y.x)), hn::MulAdd(cosine, x.y, hn::Mul(sine, y.y)),
+          hn::MulAdd(cosine, x.z, hn::Mul(sine, y.z))};
+}
+
+/// Without the y axis; `amplitude` is a factor for that of the half-vector lobe.
+template <class V>
+struct WarpedLobe {
+  Vector3<V> x, z;
+  V bandwidth_x, bandwidth_y, amplitude, jacobian;
+};
+
+inline constexpr float kMinWarpCosineFloat = 0.01f;
+
+/// warp_to_incoming.
+template <class D, class V>
+HWY_INLINE WarpedLobe<V> warp_to_incoming(D d, const Frame<V>& half, V bandwidth_x, V bandwidth_y,
+                                          const Vector3<V>& outgoing) {
+  const V zero = hn::Zero(d);
+  const Vector3<V> o = to_local(half, outgoing);
+  const Vector3<V> z = {hn::Neg(o.x), hn::Neg(o.y), o.z};
+  const AcrossView<V> across = across_view(d, o);
+  const Vector3<V> x = {across.x, across.y, zero};
+  const V c = hn::Max(o.z, hn::Set(d, kMinWarpCosineFloat));
+  const WarpedAxes<V> axes =
+      warped_axes(d, bandwidth_x, bandwidth_y, across.xx, across.yy, across.xy, c);
+  const Vector3<V> axis = warped_x(d, axes, x, cross(z, x), across.length_squared);
+  return {to_world(half, axis),
+          to_world(half, z),
+          axes.bandwidth_x,
+          axes.bandwidth_y,
+          hn::IfThenElseZero(hn::Gt(o.z, zero), hn::Set(d, 1.0f)),
+          hn::Mul(hn::Set(d, 4.0f), c)};
+}
+
+template <class V>
+struct CutNormal {
+  V mean, weighted_mean, weighted_square, probability_over_mean;
+};
+
+/// internal::cut_normal.
+template <class D, class V>
+HWY_INLINE CutNormal<V> cut_normal(D d, V mean, V variance) {
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d), half = hn::Set(d, 0.5f);
+  // Out of sight beside any mean that shows. A wider range is not needed: means are at most 1.
+  const V deviation = hn::Max(hn::Sqrt(variance), hn::Set(d, 1e-15f));
+  const V lowest = hn::Set(d, -4.0f);
+  const V ratio = hn::Max(hn::Div(mean, deviation), lowest);
+  // The density and the tail from one exponential: below 0, where they cancel, its error does, too.
+  const V size = hn::Abs(ratio);
+  // From 6 on both are out of sight; products of smaller numbers would be denormal, and slow.
+  const V y = hn::Min(hn::Mul(size, hn::Set(d, 0.707106781f)), hn::Set(d, 6.0f));
+  const V e = exp_minus_square(d, y);
+  const V t = hn::Div(one, hn::MulAdd(hn::Set(d, 0.4f), y, one));
+  const V tail = hn::Mul(half, hn::Mul(t, erfc_curve(d, t)));
+  const auto is_negative = hn::Lt(ratio, zero);
+  const V probability = hn::IfThenElse(is_negative, hn::Mul(e, tail), hn::NegMulAdd(e, tail, one));
+  const V lacking = hn::NegMulAdd(size, tail, hn::Set(d, 0.398942280f));
+  const V excess = hn::MulAdd(e, lacking, hn::Max(ratio, zero));
+  const V third = hn::Div(probability, hn::Mul(excess, deviation));
+  const V held_mean = hn::Mul(ratio, deviation), held_variance = hn::Mul(deviation, deviation);
+  CutNormal<V> s;
+  s.mean = hn::IfThenElseZero(hn::Gt(ratio, lowest), hn::Mul(deviation, excess));
+  s.weighted_mean = hn::MulAdd(held_variance, third, held_mean);
+  s.weighted_square =
+      hn::Max(hn::MulAdd(held_mean, s.weighted_mean, hn::Add(held_variance, held_variance)), zero);
+  s.probability_over_mean = third;
+  return s;
+}
+
+/// What warp_mean_to_incoming reads of a LobeShape, in all lanes.
+template <class V>
+struct LobeShape {
+  V integral, mean_z, mean_xx, mean_yy, variance_z, mean_xxz, mean_yyz, mean_zzz;
+};
+
+/// warp_mean_to_incoming.
+template <class D, class V>
+HWY_INLINE WarpedLobe<V> warp_mean_to_incoming(D d, const Frame<V>& half, V bandwidth_x,
+                                               V bandwidth_y, const LobeShape<V>& m,
+                                               const Vector3<V>& outgoing) {
+  const V one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), four = hn::Set(d, 4.0f);
+  const Vector3<V> o = to_local(half, outgoing);
+  const V xx = hn::Mul(o.x, o.x), yy = hn::Mul(o.y, o.y), zz = hn::Mul(o.z, o.z);
+  const V variance = weighted_sum(xx, m.mean_xx, yy, m.mean_yy, zz, m.variance_z);
+  const CutNormal<V> s = cut_normal(d, hn::Mul(o.z, m.mean_z), variance);
+  const V third = s.probability_over_mean;
+  const V xxz = hn::Mul(third, m.mean_xxz), yyz = hn::Mul(third, m.mean_yyz),
+          zzz = hn::Mul(third, m.mean_zzz);
+  const V turn_x = hn::MulSub(four, hn::MulAdd(o.z, xxz, m.mean_xx), one);
+  const V turn_y = hn::MulSub(four, hn::MulAdd(o.z, yyz, m.mean_yy), one);
+  const V turn_z = hn::MulSub(four, m.variance_z, one);
+  const V along = hn::MulAdd(m.mean_z, s.weighted_mean, weighted_sum(xx, xxz, yy, yyz, zz, zzz));
+  Vector3<V> z = {hn::Mul(o.x, turn_x), hn::Mul(o.y, turn_y),
+                  hn::MulAdd(two, along, hn::Mul(o.z, turn_z))};
+  const V length_squared = dot(z, z);
+  const auto has_axis = hn::Gt(length_squared, hn::Set(d, 1e-30f));
+  const V inverse = hn::Div(one, hn::Sqrt(hn::IfThenElse(has_axis, length_squared, one)));
+  z = {hn::IfThenElseZero(has_axis, hn::Mul(z.x, inverse)),
+       hn::IfThenElseZero(has_axis, hn::Mul(z.y, inverse)),
+       hn::IfThenElse(has_axis, hn::Mul(z.z, inverse), one)};
+
+  const AcrossView<V> across = across_view(d, o);
+  const V overlap = hn::MulAdd(across.x, z.x, hn::Mul(across.y, z.y));
+  const Vector3<V> x = {hn::NegMulAdd(overlap, z.x, across.x),
+                        hn::NegMulAdd(overlap, z.y, across.y), hn::Neg(hn::Mul(overlap, z.z))};
+  const V c = hn::Min(hn::Max(hn::Sqrt(s.weighted_square), hn::Set(d, kMinWarpCosineFloat)), one);
+  const WarpedAxes<V> axes =
+      warped_axes(d, bandwidth_x, bandwidth_y, across.xx, across.yy, across.xy, c);
+  const V x_squared = hn::Max(dot(x, x), hn::Set(d, 1e-14f));
+  const V jacobian = hn::Mul(four, s.mean);
+  const AsgIntegralParts<V> whole = asg_integral_parts(d, axes.bandwidth_x, axes.bandwidth_y);
+  const V over_plane =
+      hn::Mul(hn::Mul(jacobian, m.integral), hn::Mul(hn::Set(d, 0.318309886f), whole.root));
+  return {to_world(half, warped_x(d, axes, x, cross(z, x), x_squared)),
+          to_world(half, z),
+          axes.bandwidth_x,
+          axes.bandwidth_y,
+          hn::Div(over_plane, whole.mean),
+          jacobian};
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace burnish
+HWY_AFTER_NAMESPACE();
+
+#endif
