@@ -245,9 +245,9 @@ std::vector<Row> asg_rows() {
                      AsgIntegralAt<AsgIntegral::exact>, AsgProductAmplitude<SmoothTerms::constant>,
                      AsgProductAmplitude<SmoothTerms::expanded>, AsgProductBandwidths,
                      AsgInnerProduct<false>, AsgInnerProduct<true>, AsgSgConvolution,
-                     AsgAsgConvolution, ResultFrames, AsgPdf, AsgSample, AsgSupportAngles,
-                     AsgClampedCosine, WarpBandwidths, WarpAmplitude, WarpMean, WarpMeanMass,
-                     WarpMeanIntegral>();
+                     AsgAsgConvolution, ResultFrames, AsgPdf, AsgSample, AsgConversions,
+                     AsgSupportAngles, AsgClampedCosine, WarpBandwidths, WarpAmplitude, WarpMean,
+                     WarpMeanMass, WarpMeanIntegral>();
 }
 
 }  // namespace burnish::test

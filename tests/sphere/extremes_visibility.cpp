@@ -120,7 +120,7 @@ std::vector<Row> visibility_rows() {
       Hemisphere<HemisphereLevel::fast>, Hemisphere<HemisphereLevel::exact>, Cap, Directional,
       BandwidthAcross, DirectionalBandwidth, VisibleIntegral<VisibilityModel::cap>,
       VisibleIntegral<VisibilityModel::hemisphere>, VisibleIntegral<VisibilityModel::directional>,
-      Taps<false, 5>, Taps<true, 5>>();
+      CombIntegral, Taps<false, 5>, Taps<true, 5>>();
 }
 
 }  // namespace burnish::test
