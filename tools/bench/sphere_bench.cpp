@@ -62,7 +62,12 @@ struct Inputs {
   std::vector<float> gradient_x, gradient_y;     ///< of the gradients, in the lobes' frames
   std::vector<float> ones = std::vector<float>(kItems, 1.0f);
   std::vector<float> results = std::vector<float>(kItems), more_results = results;
+  std::vector<std::vector<float>> warped{10, results};
 
+  batch::WarpedLobes warped_soa() {
+    auto& w = warped;
+    return {{w[0], w[1], w[2]}, {w[3], w[4], w[5]}, w[6], w[7], w[8], w[9]};
+  }
   batch::Directions soa() const { return {x, y, z}; }
   batch::AnisotropicGaussians lobes_soa() const {
     return {{frame_x[0], frame_x[1], frame_x[2]},
@@ -371,6 +376,23 @@ std::vector<Measured> batch_forms(Inputs& in, const Truths& truths) {
           "ASG in a half-space", "directional",
           [&in, out] { batch::visible_fraction_directional(in.across, in.distance, out); },
           &truths.asg_half_space),
+      form("SG clamped cosine", "",
+           [&in, out, lobe = prepare_clamped_cosine(in.round_lobes[0])] {
+             batch::clamped_cosine_integral(lobe, in.soa(), out);
+           }),
+      form("ASG convolution with SG", "",
+           [&in, out] {
+             batch::convolve(in.bandwidth_x, in.bandwidth_y, in.sharpness,
+                             {in.warped[0], in.warped[1], out});
+           }),
+      form("warp", "peak",
+           [&in] { batch::warp_to_incoming(in.lobes_soa(), in.soa(), in.warped_soa()); }),
+      form("warp", "mean",
+           [&in] {
+             const batch::AnisotropicGaussians lobes = in.lobes_soa();
+             batch::warp_mean_to_incoming(in.bandwidth_x[0], in.bandwidth_y[0], in.shapes[0],
+                                          {lobes.x, lobes.z}, in.soa(), in.warped_soa());
+           }),
       form("octahedral map", "",
            [&in, out] { batch::direction_to_octahedral(in.soa(), out, in.more_results); }),
   };
