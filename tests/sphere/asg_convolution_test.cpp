@@ -18,40 +18,19 @@ class AsgConvolution : public testing::Test {};
 using Scalars = testing::Types<float, double>;
 TYPED_TEST_SUITE(AsgConvolution, Scalars);
 
-struct Node {
-  Vector3d direction;
-  double weight;
-};
-
-/// A quadrature rule over the sphere that follows a lobe: Gauss-Legendre in the radius of a
-/// stereographic plane about its axis, scaled by its widths, the trapezoid rule in azimuth.
-std::vector<Node> nodes_about(const Lobe& lobe, int steps) {
-  const double width_x = std::min(1.0, 2 / std::sqrt(lobe.bandwidth_x + 1));
-  const double width_y = std::min(1.0, 2 / std::sqrt(lobe.bandwidth_y + 1));
-  std::vector<Node> nodes;
-  for (const auto& [t, weight] : test::gauss_legendre(steps, 0, 1)) {
-    const double q = t / (1 - t);
-    for (int i = 0; i < steps; ++i) {
-      const double azimuth = (i + 0.5) * 2 * kPi<double> / steps;
-      const double x = width_x * q * std::cos(azimuth), y = width_y * q * std::sin(azimuth);
-      const double r2 = x * x + y * y;
-      const double area = width_x * width_y * q / ((1 - t) * (1 - t)) * 4 / ((1 + r2) * (1 + r2));
-      nodes.push_back({lobe.frame.to_world(Vector3d(2 * x, 2 * y, 1 - r2) / (1 + r2)),
-                       weight * area * 2 * kPi<double> / steps});
-    }
-  }
-  return nodes;
+std::vector<test::Node> nodes_about(const Lobe& lobe, int steps) {
+  return test::nodes_about(lobe.frame, lobe.bandwidth_x, lobe.bandwidth_y, steps, steps);
 }
 
 /// Relative L2 error of `result` as the convolution of a lobe, kernel_at(p, v) being the kernel's
 /// value at v when it is about p.
 template <class Kernel>
 double relative_l2(const Lobe& result, const Lobe& lobe, const Kernel& kernel_at) {
-  std::vector<Node> inner = nodes_about(lobe, 64);
+  std::vector<test::Node> inner = nodes_about(lobe, 64);
   std::vector<double> values;
-  for (const Node& node : inner) values.push_back(node.weight * eval(lobe, node.direction));
+  for (const test::Node& node : inner) values.push_back(node.weight * eval(lobe, node.direction));
   double error = 0, norm = 0;
-  for (const Node& outer : nodes_about(result, 20)) {
+  for (const test::Node& outer : nodes_about(result, 20)) {
     double truth = 0;
     for (size_t i = 0; i < inner.size(); ++i) {
       if (values[i] > 1e-12) truth += values[i] * kernel_at(outer.direction, inner[i].direction);
@@ -169,6 +148,77 @@ TYPED_TEST(AsgConvolution, OfAnAsgByARoundKernelIsThatByTheSg) {
     EXPECT_NEAR(by_asg.amplitude / by_sg.amplitude, 1, tolerance);
     EXPECT_NEAR(std::abs(by_asg.frame.x.dot(by_sg.frame.x)), 1, tolerance);
   }
+}
+
+TYPED_TEST(AsgConvolution, DoesNotDependOnWhereTheKernelIs) {
+  using T = TypeParam;
+  // Turned by the smallest rotation to another axis, from where it comes back by the smallest.
+  constexpr unsigned kSeed = 47;
+  std::mt19937 random(kSeed);
+  for (int i = 0; i < 100; ++i) {
+    Lobe lobe, kernel;
+    lobe.frame = test::random_frame(test::random_direction(random), random);
+    lobe.bandwidth_x = 40;
+    lobe.bandwidth_y = 4;
+    kernel.frame = test::random_frame(lobe.frame.z, random);
+    kernel.bandwidth_x = 50;
+    kernel.bandwidth_y = 5;
+    const Vector3d axis = test::random_direction(random);
+    const Lobe elsewhere = rotate(kernel, minimal_rotation(kernel.frame.z, axis));
+    const auto stored = [](const Lobe& l) {
+      return AnisotropicGaussian<T>{l.frame.cast<T>(), T(l.bandwidth_x), T(l.bandwidth_y), T(1)};
+    };
+    const AnisotropicGaussian<T> here = convolve(stored(lobe), stored(kernel));
+    const AnisotropicGaussian<T> there = convolve(stored(lobe), stored(elsewhere));
+    // Frames are rounded to T. The smallest rotation from an axis to nearly the opposite one turns
+    // by the rounding over the angle that is left; and an ellipse's axis by its own rounding over
+    // the difference of its bandwidths (4 to 22 here), which moves it little.
+    const double left = (axis + lobe.frame.z).norm();
+    const double tolerance = 64 * std::numeric_limits<T>::epsilon() / std::min(left, 1.0);
+    EXPECT_NEAR(there.bandwidth_x / here.bandwidth_x, 1, tolerance) << "seed " << kSeed;
+    EXPECT_NEAR(there.bandwidth_y / here.bandwidth_y, 1, tolerance) << "seed " << kSeed;
+    EXPECT_NEAR(there.amplitude / here.amplitude, 1, tolerance) << "seed " << kSeed;
+    EXPECT_NEAR(
+        std::abs(there.frame.x.dot(here.frame.y)) * (1 - here.bandwidth_y / here.bandwidth_x), 0,
+        tolerance)
+        << "seed " << kSeed;
+  }
+}
+
+TYPED_TEST(AsgConvolution, OnlyTheDirectionOfTheKernelsFrameCounts) {
+  using T = TypeParam;
+  // An axis that has drifted from unit length does not change the kernel's widths.
+  AnisotropicGaussian<T> lobe, kernel;
+  lobe.bandwidth_x = 40;
+  lobe.bandwidth_y = 4;
+  kernel.bandwidth_x = 50;
+  kernel.bandwidth_y = 5;
+  const AnisotropicGaussian<T> exact = convolve(lobe, kernel);
+  kernel.frame.x *= T(1.01);
+  const AnisotropicGaussian<T> stretched = convolve(lobe, kernel);
+  EXPECT_NEAR(stretched.bandwidth_x / exact.bandwidth_x, 1, 8 * std::numeric_limits<T>::epsilon());
+  EXPECT_NEAR(stretched.amplitude / exact.amplitude, 1, 8 * std::numeric_limits<T>::epsilon());
+}
+
+TYPED_TEST(AsgConvolution, AmplitudesSaturateAtTheLargestNumber) {
+  using T = TypeParam;
+  constexpr T kLargest = std::numeric_limits<T>::max();
+  AnisotropicGaussian<T> lobe, kernel;
+  SphericalGaussian<T> sg;
+  lobe.amplitude = kernel.amplitude = sg.amplitude = std::sqrt(kLargest) * 4;
+  EXPECT_EQ(convolve(lobe, kernel).amplitude, kLargest);
+  EXPECT_EQ(convolve(lobe, sg).amplitude, kLargest);
+  lobe.amplitude = -lobe.amplitude;
+  EXPECT_EQ(convolve(lobe, kernel).amplitude, -kLargest);
+  EXPECT_EQ(convolve(lobe, sg).amplitude, -kLargest);
+  // Neither does a product that is within the range go through one that is not.
+  lobe.amplitude = std::numeric_limits<T>::min();
+  kernel.amplitude = sg.amplitude = kLargest;
+  lobe.bandwidth_x = lobe.bandwidth_y = kLargest;
+  const double expected = double(lobe.amplitude) * double(kLargest) * (kPi<double> / kLargest);
+  // pi / kLargest is denormal: 22 or 51 bits.
+  EXPECT_NEAR(convolve(lobe, kernel).amplitude / expected, 1, 1e-5);
+  EXPECT_NEAR(convolve(lobe, sg).amplitude / expected, 1, 1e-5);
 }
 
 TYPED_TEST(AsgConvolution, KeepsTheMassOfNarrowLobes) {

@@ -24,40 +24,25 @@ AnisotropicGaussian<T> cast(const Lobe& lobe) {
           T(lobe.amplitude)};
 }
 
-/// Quadrature over the sphere on a grid that follows a lobe: Gauss-Legendre in the radius of a
-/// stereographic plane about the lobe's axis, scaled by its widths, the trapezoid rule in azimuth.
-template <class F>
-void for_each_node(const Lobe& about, int steps, const F& f) {
-  const double width_x = std::min(1.0, 2 / std::sqrt(about.bandwidth_x + 1));
-  const double width_y = std::min(1.0, 2 / std::sqrt(about.bandwidth_y + 1));
-  for (const auto& [t, weight] : test::gauss_legendre(steps, 0, 1)) {
-    const double q = t / (1 - t);
-    for (int i = 0; i < 2 * steps; ++i) {
-      const double azimuth = (i + 0.5) * kPi<double> / steps;
-      const double x = width_x * q * std::cos(azimuth), y = width_y * q * std::sin(azimuth);
-      const double r2 = x * x + y * y;
-      const Vector3d local = Vector3d(2 * x, 2 * y, 1 - r2) / (1 + r2);
-      const double area = width_x * width_y * q / ((1 - t) * (1 - t)) * 4 / ((1 + r2) * (1 + r2));
-      f(about.frame.to_world(local), weight * area * kPi<double> / steps);
-    }
-  }
+std::vector<test::Node> nodes_about_product(const Lobe& a, const Lobe& b) {
+  const Lobe c = product(a, b, SmoothTerms::expanded);
+  return test::nodes_about(c.frame, c.bandwidth_x, c.bandwidth_y, 60, 120);
 }
 
 /// Relative L2 error of a lobe as the product of two others.
 double relative_l2(const Lobe& approximation, const Lobe& a, const Lobe& b) {
   double error = 0, norm = 0;
-  for_each_node(product(a, b, SmoothTerms::expanded), 60, [&](const Vector3d& v, double weight) {
+  for (const auto& [v, weight] : nodes_about_product(a, b)) {
     const double truth = eval(a, v) * eval(b, v);
     error += weight * std::pow(eval(approximation, v) - truth, 2);
     norm += weight * truth * truth;
-  });
+  }
   return std::sqrt(error / norm);
 }
 
 double true_inner_product(const Lobe& a, const Lobe& b) {
   double sum = 0;
-  for_each_node(product(a, b, SmoothTerms::expanded), 60,
-                [&](const Vector3d& v, double weight) { sum += weight * eval(a, v) * eval(b, v); });
+  for (const auto& [v, weight] : nodes_about_product(a, b)) sum += weight * eval(a, v) * eval(b, v);
   return sum;
 }
 

@@ -81,6 +81,32 @@ TEST(Sg, OppositeAxesOfEqualSharpnessGiveAConstant) {
   const auto c = product(a, b);
   EXPECT_EQ(c.sharpness, 0);
   EXPECT_NEAR(c.amplitude, std::exp(-6.0), 1e-15);
+  EXPECT_EQ(c.axis, a.axis);
+}
+
+TYPED_TEST(Sg, AmplitudesNeitherOverflowNorUnderflowOnTheWay) {
+  using T = TypeParam;
+  constexpr T kMax = std::numeric_limits<T>::max(), kMin = std::numeric_limits<T>::min();
+  const double tolerance = 200 * std::numeric_limits<T>::epsilon();  // exponents to 60, rounded
+  SphericalGaussian<T> a, b;
+  a.sharpness = b.sharpness = 30;
+  b.axis = -b.axis;
+  for (const bool swapped : {false, true}) {
+    a.amplitude = swapped ? kMax : 4 * kMin;
+    b.amplitude = swapped ? 4 * kMin : kMax;
+    // 4 kMin kMax is 16; with exp(-60) next to kMin it would have left the range.
+    EXPECT_NEAR(product(a, b).amplitude / (16 * std::exp(-60.0)), 1, tolerance);
+    EXPECT_NEAR(inner_product(a, b) / (16 * 4 * kPi<double> * std::exp(-60.0)), 1, tolerance);
+    // And so would kMax with the 4 pi of a constant.
+    const SphericalGaussian<T> large{a.axis, T(0), a.amplitude}, small{a.axis, T(0), b.amplitude};
+    EXPECT_NEAR(inner_product(large, small) / (64 * kPi<double>), 1, tolerance);
+    EXPECT_NEAR(convolve(large, small).amplitude / (64 * kPi<double>), 1, tolerance);
+  }
+  a.amplitude = b.amplitude = kMax;
+  b.axis = a.axis;
+  EXPECT_EQ(product(a, b).amplitude, kMax);
+  a.amplitude = -kMax;
+  EXPECT_EQ(inner_product(a, b), -kMax);
 }
 
 TYPED_TEST(Sg, NothingOverflowsAtTheLargestSharpness) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <utility>
@@ -49,6 +50,33 @@ double integrate_sphere(const F& f, const Vector3d& axis = Vector3d::UnitZ(), in
     }
   }
   return sum;
+}
+
+struct Node {
+  Vector3d direction;
+  double weight;
+};
+
+/// A quadrature rule over the sphere that follows a lobe of these bandwidths: Gauss-Legendre in the
+/// radius of a stereographic plane about the frame's z, scaled by the lobe's widths, the trapezoid
+/// rule in azimuth.
+inline std::vector<Node> nodes_about(const Frame<double>& frame, double bandwidth_x,
+                                     double bandwidth_y, int radii, int azimuths) {
+  const double width_x = std::min(1.0, 2 / std::sqrt(bandwidth_x + 1));
+  const double width_y = std::min(1.0, 2 / std::sqrt(bandwidth_y + 1));
+  std::vector<Node> nodes;
+  for (const auto& [t, weight] : gauss_legendre(radii, 0, 1)) {
+    const double q = t / (1 - t);
+    for (int i = 0; i < azimuths; ++i) {
+      const double azimuth = (i + 0.5) * 2 * kPi<double> / azimuths;
+      const double x = width_x * q * std::cos(azimuth), y = width_y * q * std::sin(azimuth);
+      const double r2 = x * x + y * y;
+      const double area = width_x * width_y * q / ((1 - t) * (1 - t)) * 4 / ((1 + r2) * (1 + r2));
+      nodes.push_back({frame.to_world(Vector3d(2 * x, 2 * y, 1 - r2) / (1 + r2)),
+                       weight * area * 2 * kPi<double> / azimuths});
+    }
+  }
+  return nodes;
 }
 
 inline Vector3d random_direction(std::mt19937& random) {

@@ -10,7 +10,8 @@
 /// Convolutions of an ASG, as lobes over the kernel's axis. Based on: xu2013asg, section 4.3. Where
 /// we differ: the square is completed in the orthographic plane (the paper's rotated frame is not
 /// orthonormal), the amplitude is the disc's integral and not the plane's, so that it stays finite
-/// for wide lobes, and kernels may be anisotropic.
+/// for wide lobes, and kernels may be anisotropic. An amplitude that would leave the scalar's range
+/// becomes the largest finite number.
 namespace burnish {
 
 /// C(p) = integral of lobe(v) sg(v; p) over v, as a lobe over p (Eq. 18; the SG's own axis is not
@@ -32,7 +33,7 @@ AnisotropicGaussian<T> convolve(const AnisotropicGaussian<T>& lobe,
   result.bandwidth_y = blurred(lobe.bandwidth_y);
   const T whole = asg_integral_exact(std::min(lobe.bandwidth_x + nu, kLargest),
                                      std::min(lobe.bandwidth_y + nu, kLargest));
-  result.amplitude = lobe.amplitude * whole * kernel.amplitude;
+  result.amplitude = internal::scaled_product(lobe.amplitude, kernel.amplitude, whole);
   return result;
 }
 
@@ -74,7 +75,7 @@ AnisotropicGaussian<T> convolve(const AnisotropicGaussian<T>& lobe,
   result.bandwidth_x = bandwidth(eigen.large);
   result.bandwidth_y = bandwidth(eigen.small);
   const T whole = asg_integral_exact(bandwidth(sum.large), bandwidth(sum.small));
-  result.amplitude = lobe.amplitude * whole * kernel.amplitude;
+  result.amplitude = internal::scaled_product(lobe.amplitude, kernel.amplitude, whole);
   return result;
 }
 

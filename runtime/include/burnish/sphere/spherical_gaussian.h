@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "burnish/sphere/direction.h"
 #include "burnish/sphere/frame.h"
@@ -46,7 +47,7 @@ template <class T>
 T scaled_product(T a, T b, T factor) {
   if (std::abs(a) < std::abs(b)) std::swap(a, b);
   constexpr T kMax = std::numeric_limits<T>::max();
-  return std::clamp(a * factor * b, -kMax, kMax);
+  return std::clamp(factor > 1 ? a * b * factor : a * factor * b, -kMax, kMax);
 }
 
 }  // namespace internal
