@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "burnish/sphere/anisotropic_gaussian.h"
 #include "burnish/sphere/asg_integral.h"
 #include "burnish/sphere/direction.h"
 #include "burnish/sphere/gauss_legendre.h"
@@ -33,25 +35,24 @@ struct LobeMoments {
   }
 };
 
-/// Moments of an ASG of any bandwidths from 0 on: relative error 1e-11 in double (of those odd in
-/// d: of their largest possible value for the others), rounding in float. 540 exponentials: once
-/// per lobe.
-template <class T>
-LobeMoments<T> asg_moments(T bandwidth_x, T bandwidth_y) {
-  // Azimuths of asg_integral.h; radii in w = 1 - z, in which the exponential is smooth and the
-  // moments of narrow lobes do not cancel: t = x^2 + y^2 = w (2 - w), dx dy = (1 - w) dw
-  // d(azimuth).
-  constexpr int kAzimuths = 18;
-  constexpr double kOffset = 12.5, kTail = 40;  // exp(-40) is out of sight
-  const auto& radii = internal::unit_gauss<30>();
-  const bool x_is_narrow = bandwidth_x >= bandwidth_y;
-  const double large = x_is_narrow ? bandwidth_x : bandwidth_y;
-  const double small = x_is_narrow ? bandwidth_y : bandwidth_x;
-  const double squeeze = (small + kOffset) / (large + kOffset);
+namespace internal {
 
-  // Sums over the lobe of powers of w, and of those times x^2, y^2, x^4, x^2 y^2, y^4 (x narrow).
+/// Sums over an ASG, x its narrow axis, of powers of w = 1 - z, and of those times x^2, y^2, x^4,
+/// x^2 y^2 and y^4.
+struct AsgSums {
   double one = 0, w1 = 0, w2 = 0, w3 = 0, w4 = 0;
   double xx = 0, xxw = 0, xxww = 0, yy = 0, yyw = 0, yyww = 0, xxxx = 0, xxyy = 0, yyyy = 0;
+};
+
+/// The sums, of the normalised lobe: azimuths of asg_integral.h; radii in w, in which the
+/// exponential is smooth and the moments of narrow lobes do not cancel: t = x^2 + y^2 = w (2 - w),
+/// dx dy = (1 - w) dw d(azimuth).
+inline AsgSums asg_sums(double large, double small) {
+  constexpr int kAzimuths = 18;
+  constexpr double kOffset = 12.5, kTail = 40;  // exp(-40) is out of sight
+  const auto& radii = unit_gauss<30>();
+  const double squeeze = (small + kOffset) / (large + kOffset);
+  AsgSums sum;
   for (const double cos_squared : quarter_turn_cosines_squared<double, kAzimuths>()) {
     const double sin_squared = 1 - cos_squared;
     const auto azimuth = asg_azimuth(large, small, squeeze, cos_squared, sin_squared);
@@ -63,40 +64,54 @@ LobeMoments<T> asg_moments(T bandwidth_x, T bandwidth_y) {
       const double w = w_end * radii.node[i];
       const double t = w * (2 - w);
       const double f = jacobian * radii.weight[i] * (1 - w) * std::exp(-k * t);
-      one += f;
-      w1 += f * w;
-      w2 += f * w * w;
-      w3 += f * w * w * w;
-      w4 += f * w * w * w * w;
-      xx += f * t * c;
-      xxw += f * t * c * w;
-      xxww += f * t * c * w * w;
-      yy += f * t * s;
-      yyw += f * t * s * w;
-      yyww += f * t * s * w * w;
-      xxxx += f * t * t * c * c;
-      xxyy += f * t * t * c * s;
-      yyyy += f * t * t * s * s;
+      sum.one += f;
+      sum.w1 += f * w;
+      sum.w2 += f * w * w;
+      sum.w3 += f * w * w * w;
+      sum.w4 += f * w * w * w * w;
+      sum.xx += f * t * c;
+      sum.xxw += f * t * c * w;
+      sum.xxww += f * t * c * w * w;
+      sum.yy += f * t * s;
+      sum.yyw += f * t * s * w;
+      sum.yyww += f * t * s * w * w;
+      sum.xxxx += f * t * t * c * c;
+      sum.xxyy += f * t * t * c * s;
+      sum.yyyy += f * t * t * s * s;
     }
   }
-  for (double* sum : {&w1, &w2, &w3, &w4, &xx, &xxw, &xxww, &yy, &yyw, &yyww, &xxxx, &xxyy, &yyyy})
-    *sum /= one;
+  for (double* value : {&sum.w1, &sum.w2, &sum.w3, &sum.w4, &sum.xx, &sum.xxw, &sum.xxww, &sum.yy,
+                        &sum.yyw, &sum.yyww, &sum.xxxx, &sum.xxyy, &sum.yyyy})
+    *value /= sum.one;
+  return sum;
+}
 
+}  // namespace internal
+
+/// Moments of an ASG of any bandwidths from 0 on: relative error 1e-11 in double (of those odd in
+/// d: of their largest possible value for the others), rounding in float. 540 exponentials: once
+/// per lobe.
+template <class T>
+LobeMoments<T> asg_moments(T bandwidth_x, T bandwidth_y) {
+  const bool x_is_narrow = bandwidth_x >= bandwidth_y;
+  const internal::AsgSums s = x_is_narrow ? internal::asg_sums(bandwidth_x, bandwidth_y)
+                                          : internal::asg_sums(bandwidth_y, bandwidth_x);
   // d = w1 - w, so that the central moments are differences of numbers of their own size.
+  const double w1 = s.w1;
   LobeMoments<double> m;
   m.mean_z = 1 - w1;
-  m.mean_xx = xx;
-  m.mean_yy = yy;
-  m.variance_z = w2 - w1 * w1;
-  m.mean_xxz = w1 * xx - xxw;
-  m.mean_yyz = w1 * yy - yyw;
-  m.mean_zzz = -(w3 - 3 * w1 * w2 + 2 * w1 * w1 * w1);
-  m.mean_xxxx = xxxx;
-  m.mean_yyyy = yyyy;
-  m.mean_zzzz = w4 - 4 * w1 * w3 + 6 * w1 * w1 * w2 - 3 * w1 * w1 * w1 * w1;
-  m.mean_xxyy = xxyy;
-  m.mean_xxzz = w1 * w1 * xx - 2 * w1 * xxw + xxww;
-  m.mean_yyzz = w1 * w1 * yy - 2 * w1 * yyw + yyww;
+  m.mean_xx = s.xx;
+  m.mean_yy = s.yy;
+  m.variance_z = s.w2 - w1 * w1;
+  m.mean_xxz = w1 * s.xx - s.xxw;
+  m.mean_yyz = w1 * s.yy - s.yyw;
+  m.mean_zzz = -(s.w3 - 3 * w1 * s.w2 + 2 * w1 * w1 * w1);
+  m.mean_xxxx = s.xxxx;
+  m.mean_yyyy = s.yyyy;
+  m.mean_zzzz = s.w4 - 4 * w1 * s.w3 + 6 * w1 * w1 * s.w2 - 3 * w1 * w1 * w1 * w1;
+  m.mean_xxyy = s.xxyy;
+  m.mean_xxzz = w1 * w1 * s.xx - 2 * w1 * s.xxw + s.xxww;
+  m.mean_yyzz = w1 * w1 * s.yy - 2 * w1 * s.yyw + s.yyww;
   if (!x_is_narrow) {
     std::swap(m.mean_xx, m.mean_yy);
     std::swap(m.mean_xxz, m.mean_yyz);
@@ -160,6 +175,16 @@ T mean_clamped_cosine(const LobeMoments<T>& moments, const Vector3<T>& normal) {
   // max(E, 0) <= E[max] <= (E + sqrt(E[(n.v)^2])) / 2, for any distribution.
   return std::clamp(deviation * density * (1 + correction) + mean * above, std::max(mean, T(0)),
                     (mean + std::sqrt(mean * mean + variance)) / 2);
+}
+
+/// Integral of lobe(v) max(v . normal, 0) over the sphere, `normal` unit: error as
+/// mean_clamped_cosine, never negative for amplitudes >= 0. It finds the lobe's moments at every
+/// call; for many normals, keep asg_moments and integral(lobe), which depend on the lobe alone, and
+/// multiply the latter by mean_clamped_cosine of each normal.
+template <class T>
+T clamped_cosine_integral(const AnisotropicGaussian<T>& lobe, const Vector3<T>& normal) {
+  const LobeMoments<T> moments = asg_moments(lobe.bandwidth_x, lobe.bandwidth_y);
+  return integral(lobe) * mean_clamped_cosine(moments, lobe.frame.to_local(normal));
 }
 
 }  // namespace burnish
