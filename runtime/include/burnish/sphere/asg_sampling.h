@@ -30,8 +30,8 @@ T sample_asg_azimuth(T large, T small, T squeeze, T offset, T u) {
       sum += T(rule.weight[i]) * density(from + (to - from) * T(rule.node[i]));
     return (to - from) * sum;
   };
-  // Error of the distribution function: 7e-7 and 4e-11 for any bandwidths. A step of Newton's
-  // method is short, a third of the points does for it.
+  // Error of the distribution function, rounding included: 1.3e-6 and 5e-11 for any bandwidths. A
+  // step of Newton's method is short, a third of the points does for it.
   constexpr bool is_float = std::is_same_v<T, float>;
   constexpr int kPoints = is_float ? 12 : 24;
   const auto& rule = unit_gauss<kPoints>();
@@ -54,7 +54,8 @@ T sample_asg_azimuth(T large, T small, T squeeze, T offset, T u) {
 
 /// A direction distributed as the lobe, from u and v uniform in [0, 1); 1 counts as its neighbour.
 /// Continuous and one to one in both: u is the azimuth, round the axis from the direction of the
-/// larger bandwidth, v the distance from the axis. Density: pdf(lobe, direction).
+/// larger bandwidth (from x toward y, or from y toward x), v the distance from the axis. Density:
+/// pdf(lobe, direction).
 ///
 /// The radius given the azimuth inverts in closed form. The azimuth psi is uniform where the disc's
 /// edge is out of sight; else its density is the g of asg_integral.h, inverted numerically.
