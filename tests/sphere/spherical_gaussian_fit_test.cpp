@@ -186,6 +186,17 @@ TYPED_TEST(SgFit, OpposedDirectionsAndNoneGiveAConstant) {
   EXPECT_NEAR(integral(sg_from_mean(mean)), 2, 1e-6);
   const auto none = mean_direction(std::span<const Vector3<T>>());
   EXPECT_EQ(none.weight, 0);
+  EXPECT_EQ(none.resultant.length, 0);
+  EXPECT_EQ(none.resultant.complement, 1);
+  EXPECT_EQ(none.axis, Vector3<T>::UnitZ());
+  // As none: directions that weigh nothing.
+  const std::vector<T> nothing = {0, 0};
+  const auto weightless =
+      mean_direction(std::span<const Vector3<T>>(opposed), std::span<const T>(nothing));
+  EXPECT_EQ(weightless.weight, 0);
+  EXPECT_EQ(weightless.resultant.length, 0);
+  EXPECT_EQ(weightless.resultant.complement, 1);
+  EXPECT_EQ(sg_from_mean(weightless).amplitude, 0);
   EXPECT_EQ(sg_from_mean(none).amplitude, 0);
 }
 
