@@ -626,7 +626,8 @@ TEST_P(Batch, MeanWarpMatchesTheScalarForm) {
                                                  {kMax, 1e3f},
                                                  {kMax, kMax}}) {
     const LobeShape<float> shape = make_lobe_shape(bandwidth_x, bandwidth_y);
-    const LobeShape<double> shape_in_double = {shape.integral, shape.moments.cast<double>()};
+    const LobeShape<double> shape_in_double = {shape.integral, shape.moments.cast<double>(),
+                                               shape.in_plane_cosine};
     batch::warp_mean_to_incoming(bandwidth_x, bandwidth_y, shape, views.frames(),
                                  views.outgoing.spans(), results.spans());
     for (size_t i = 0; i < size; ++i) {

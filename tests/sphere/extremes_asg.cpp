@@ -198,12 +198,8 @@ struct WarpAmplitude : Relative {
 };
 
 struct WarpMean {
-  // Far behind the horizon, where the amplitude vanishes, widths hang on a difference of tails;
-  // seen along its axis, a wide lobe is squeezed across a view that rounding chooses.
-  static double scale(const Extreme<double>& x) {
-    if (x.angle > 3 || (x.angle < 1e-3 && x.wide < 10)) return kInfinity;
-    return x.narrow;
-  }
+  // Far behind the horizon, where the amplitude vanishes, widths hang on a difference of tails.
+  static double scale(const Extreme<double>& x) { return x.angle > 3 ? kInfinity : x.narrow; }
   static constexpr Claims kClaims = {"warp, mean form: bandwidths", kRatio | kAngle, 1e-3};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {

@@ -71,10 +71,15 @@ void warp_mean_batch(float bandwidth_x, float bandwidth_y,
   const D d;
   const V all_x = hn::Set(d, bandwidth_x), all_y = hn::Set(d, bandwidth_y);
   const auto& m = half_shape.moments;
-  const LobeShape<V> shape = {hn::Set(d, half_shape.integral), hn::Set(d, m.mean_z),
-                              hn::Set(d, m.mean_xx),           hn::Set(d, m.mean_yy),
-                              hn::Set(d, m.variance_z),        hn::Set(d, m.mean_xxz),
-                              hn::Set(d, m.mean_yyz),          hn::Set(d, m.mean_zzz)};
+  const LobeShape<V> shape = {hn::Set(d, half_shape.integral),
+                              hn::Set(d, m.mean_z),
+                              hn::Set(d, m.mean_xx),
+                              hn::Set(d, m.mean_yy),
+                              hn::Set(d, m.variance_z),
+                              hn::Set(d, m.mean_xxz),
+                              hn::Set(d, m.mean_yyz),
+                              hn::Set(d, m.mean_zzz),
+                              hn::Set(d, 1 / half_shape.in_plane_cosine)};
   for_each_view(frames.x, frames.z, outgoing, results,
                 [&](D d, const Frame<V>& half, const Vector3<V>& o)
                     HWY_ATTR { return warp_mean_to_incoming(d, half, all_x, all_y, shape, o); });

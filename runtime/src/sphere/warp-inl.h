@@ -190,6 +190,7 @@ HWY_INLINE CutNormal<V> cut_normal(D d, V mean, V variance) {
 template <class V>
 struct LobeShape {
   V integral, mean_z, mean_xx, mean_yy, variance_z, mean_xxz, mean_yyz, mean_zzz;
+  V inverse_in_plane_cosine;
 };
 
 /// warp_mean_to_incoming.
@@ -222,9 +223,13 @@ HWY_INLINE WarpedLobe<V> warp_mean_to_incoming(D d, const Frame<V>& half, V band
   const V overlap = hn::MulAdd(across.x, z.x, hn::Mul(across.y, z.y));
   const Vector3<V> x = {hn::NegMulAdd(overlap, z.x, across.x),
                         hn::NegMulAdd(overlap, z.y, across.y), hn::Neg(hn::Mul(overlap, z.z))};
-  const V c = hn::Min(hn::Max(hn::Sqrt(s.weighted_square), hn::Set(d, kMinWarpCosineFloat)), one);
-  const WarpedAxes<V> axes =
-      warped_axes(d, bandwidth_x, bandwidth_y, across.xx, across.yy, across.xy, c);
+  const V cosine = hn::Mul(hn::Sqrt(s.weighted_square), m.inverse_in_plane_cosine);
+  const V c = hn::Min(hn::Max(cosine, hn::Set(d, kMinWarpCosineFloat)), one);
+  WarpedAxes<V> axes = warped_axes(d, bandwidth_x, bandwidth_y, across.xx, across.yy, across.xy, c);
+  const V in_plane = hn::Mul(m.inverse_in_plane_cosine, m.inverse_in_plane_cosine);
+  const V largest = hn::Set(d, std::numeric_limits<float>::max());
+  axes.bandwidth_x = hn::Min(hn::Mul(axes.bandwidth_x, in_plane), largest);
+  axes.bandwidth_y = hn::Min(hn::Mul(axes.bandwidth_y, in_plane), largest);
   const V x_squared = hn::Max(dot(x, x), hn::Set(d, 1e-14f));
   const V jacobian = hn::Mul(four, s.mean);
   const AsgIntegralParts<V> whole = asg_integral_parts(d, axes.bandwidth_x, axes.bandwidth_y);

@@ -127,9 +127,9 @@ void convolve(std::span<const float> bandwidths_x, std::span<const float> bandwi
               std::span<const float> kernels_sharpness, const ConvolvedLobes& results) noexcept;
 
 /// Half-vector lobes as lobes over incoming directions, for the unit view outgoing[i] of each: of
-/// one material's bandwidths, amplitudes being factors for its lobe's; or a lobe each. Error 4e-7 of
-/// the axis, 1e-6 of the jacobian, 1e-6 + 8e-7 / c relative of the bandwidths, c the cosine of view
-/// and axis, at least .01.
+/// one material's bandwidths, amplitudes being factors for its lobe's; or a lobe each. Error 4e-7
+/// of the axis, 1e-6 of the jacobian, 1e-6 + 8e-7 / c relative of the bandwidths, c the cosine of
+/// view and axis, at least .01.
 void warp_to_incoming(float bandwidth_x, float bandwidth_y, const Frames& half_frames,
                       const Directions& outgoing, const WarpedLobes& results) noexcept;
 void warp_to_incoming(const AnisotropicGaussians& half_lobes, const Directions& outgoing,
@@ -137,8 +137,6 @@ void warp_to_incoming(const AnisotropicGaussians& half_lobes, const Directions& 
 
 /// The mean form; `shape` is that of the bandwidths. The same errors while the mean of o.h is above
 /// 0, with c = jacobian / 4; bandwidths err by 1e-4 where it is 2 deviations below, 6e-4 at 4.
-/// Besides, they follow the view's azimuth about the half-vector axis, which has no digits for a
-/// view within 1e-6 of it.
 void warp_mean_to_incoming(float bandwidth_x, float bandwidth_y, const LobeShape<float>& shape,
                            const Frames& half_frames, const Directions& outgoing,
                            const WarpedLobes& results) noexcept;

@@ -37,9 +37,8 @@ T nasg_exponent(const NormalisedAsg<T>& lobe, const Vector3<T>& direction) {
   const T square = x * x + y * y;
   // log K and the azimuth: on the axis K = 1, whatever the azimuth; opposite to it K^e = 0 unless
   // the azimuth or the anisotropy makes e zero.
-  const T log_k =
-      front ? std::log1p(T(-0.25) * std::min(offset.squaredNorm(), T(2)))
-            : std::log(offset.squaredNorm() / 4);
+  const T log_k = front ? std::log1p(T(-0.25) * std::min(offset.squaredNorm(), T(2)))
+                        : std::log(offset.squaredNorm() / 4);
   const T e = lobe.anisotropy * (square > 0 ? std::min(x * x / square, T(1)) : T(front ? 0 : 1));
   return (e > 0 ? e * log_k : T(0)) + 2 * (lobe.sharpness * std::expm1((1 + e) * log_k));
 }

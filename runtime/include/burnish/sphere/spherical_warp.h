@@ -134,21 +134,24 @@ template <class T>
 struct LobeShape {
   T integral;  ///< for amplitude one
   LobeMoments<T> moments;
+  T in_plane_cosine;  ///< sqrt(E[z^3] / E[z]): 1 for a narrow lobe, .77 for the widest
 };
 
 template <class T>
 LobeShape<T> make_lobe_shape(T bandwidth_x, T bandwidth_y) {
-  return {asg_integral_exact(bandwidth_x, bandwidth_y), asg_moments(bandwidth_x, bandwidth_y)};
+  const LobeMoments<T> m = asg_moments(bandwidth_x, bandwidth_y);
+  const T square = m.mean_z * m.mean_z + 3 * m.variance_z + m.mean_zzz / m.mean_z;
+  return {asg_integral_exact(bandwidth_x, bandwidth_y), m, std::sqrt(square)};
 }
 
 /// The mean form: a lobe of the mean direction and the integral of D(h(i)), for a unit view
 /// `outgoing`, which may be past the horizon of the lobe's axis. s = o.h, taken as a normal
 /// variable that is cut at 0, gives both in closed form (docs/maths.md, "Spherical warp"). For
 /// shading: the integral of lobe, cosine and a light at alpha (.32, .032) and 60/80/88 degrees errs
-/// by .05/.11/.15, in the peak form by .15/.50/.87, and the teeth of a LobeComb by less. The peak
+/// by .05/.10/.14, in the peak form by .15/.50/.87, and the teeth of a LobeComb by less. The peak
 /// form is better for the values of one wide lobe (relative L2 .51 against .65 at 60 degrees), and
-/// beyond alpha .5 for views near the axis; seen along its axis, a wide lobe is squeezed across x_h,
-/// since there is no view to be across. Amplitude and jacobian are 0 where no half vector is seen.
+/// beyond alpha .5 for views near the axis. Amplitude and jacobian are 0 where no half vector is
+/// seen.
 template <class T>
 WarpedLobe<T> warp_mean_to_incoming(const AnisotropicGaussian<T>& half_lobe,
                                     const LobeShape<T>& shape, const Vector3<T>& outgoing) {
@@ -170,10 +173,14 @@ WarpedLobe<T> warp_mean_to_incoming(const AnisotropicGaussian<T>& half_lobe,
   z = length > 0 ? Vector3<T>(z / length) : Vector3<T>::UnitZ();
   const Vector3<T> across = internal::across_view(o);
   const Vector3<T> x = (across - across.dot(z) * z).normalized(), y = z.cross(x);
-  // Across the view, i turns by 2 s for each turn of h.
-  const T c = std::clamp(std::sqrt(s.weighted_square), T(kMinWarpCosine), T(1));
-  const internal::WarpedAxes<T> axes = internal::warped_axes(
-      half_lobe.bandwidth_x, half_lobe.bandwidth_y, across.x(), across.y(), c);
+  // For each turn of h, i turns by 2 s across the view, and in its plane by 2, the sine of which is
+  // 2 sin cos. Seen along its axis, a lobe is the same in both.
+  const T d = shape.in_plane_cosine, largest = std::numeric_limits<T>::max();
+  const T c = std::clamp(std::sqrt(s.weighted_square) / d, T(kMinWarpCosine), T(1));
+  internal::WarpedAxes<T> axes = internal::warped_axes(half_lobe.bandwidth_x, half_lobe.bandwidth_y,
+                                                       across.x(), across.y(), c);
+  axes.bandwidth_x = std::min(axes.bandwidth_x / (d * d), largest);
+  axes.bandwidth_y = std::min(axes.bandwidth_y / (d * d), largest);
   WarpedLobe<T> warped;
   warped.lobe.frame = {half.to_world(axes.cosine * x + axes.sine * y),
                        half.to_world(axes.cosine * y - axes.sine * x), half.to_world(z)};
