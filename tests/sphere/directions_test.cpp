@@ -175,6 +175,27 @@ TEST(OctahedralMap, WrapMeetsItsNeighbour) {
   }
 }
 
+TEST(OctahedralMap, WrapMirrorsAtEveryEdge) {
+  // The two texels that meet across an edge are mirror images about its middle; by hand for 4 x 4.
+  struct Case {
+    int x, y, wrapped_x, wrapped_y;
+  };
+  for (const Case& c : {Case{-1, 0, 0, 3},
+                        {-1, 1, 0, 2},
+                        {4, 0, 3, 3},
+                        {4, 2, 3, 1},
+                        {0, -1, 3, 0},
+                        {1, -1, 2, 0},
+                        {0, 4, 3, 3},
+                        {2, 4, 1, 3},
+                        {-2, 1, 1, 2},
+                        {1, 5, 2, 2},
+                        // Past a corner: the opposite one, which is the same direction.
+                        {-1, -1, 3, 3},
+                        {4, 4, 0, 0}})
+    EXPECT_EQ(octahedral_wrap(c.x, c.y, 4), c.wrapped_y * 4 + c.wrapped_x) << c.x << " " << c.y;
+}
+
 TEST(OctahedralMap, FootprintInterpolatesASmoothFunctionAndItsGradient) {
   // f(d) = a.d has the tangent gradient a - (a.d) d.
   const int n = 256;

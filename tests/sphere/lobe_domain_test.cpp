@@ -45,6 +45,23 @@ TYPED_TEST(LobeDomain, AcceptsAxesThatWereRotatedInTheirOwnPrecision) {
   EXPECT_EQ(domain_error(AnisotropicGaussian<T>{frame, 1, 1, 1}), "");
 }
 
+TYPED_TEST(LobeDomain, RefusesAxesThatAreOffByMoreThanRounding) {
+  using T = TypeParam;
+  for (const double off : {2e-4, -2e-4, 1e-5}) {
+    const Vector3<T> axis(0, 0, T(1 + off));
+    EXPECT_NE(domain_error(SphericalGaussian<T>{axis, 1, 1}), "") << off;
+    Frame<T> frame;
+    frame.x = Vector3<T>(T(1 + off), 0, 0);
+    EXPECT_NE(domain_error(AnisotropicGaussian<T>{frame, 1, 1, 1}), "") << off;
+  }
+  // Unit, but z not quite orthogonal to x.
+  Frame<T> skewed;
+  skewed.z = Vector3<T>(T(2e-4), 0, 1);
+  EXPECT_NE(domain_error(AnisotropicGaussian<T>{skewed, 1, 1, 1}), "");
+  // And half of the tolerance is borne.
+  EXPECT_EQ(domain_error(SphericalGaussian<T>{Vector3<T>(0, 0, T(1 + 2.5e-6)), 1, 1}), "");
+}
+
 TYPED_TEST(LobeDomain, NamesTheFieldTheValueAndWhatIsExpected) {
   using T = TypeParam;
   using Sg = SphericalGaussian<T>;

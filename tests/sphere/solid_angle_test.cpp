@@ -1,5 +1,6 @@
 #include "burnish/sphere/solid_angle.h"
 
+#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -91,6 +92,31 @@ TYPED_TEST(SolidAngle, OfTinyTrianglesAndSliversIsTheirPlaneArea) {
   const Vector3<T> z = Vector3<T>::UnitZ(), x = Vector3<T>::UnitX();
   EXPECT_EQ(triangle_solid_angle(z, z, x), 0);
   EXPECT_EQ(triangle_solid_angle(z, z, z), 0);
+}
+
+TYPED_TEST(SolidAngle, DoesNotDependOnTheOrderOfTheCorners) {
+  using T = TypeParam;
+  // Two nearly opposite corners and a third between; a small triangle with one long edge. Each edge
+  // is the widest in turn.
+  const Vector3d z = Vector3d::UnitZ();
+  const Vector3d shapes[][3] = {
+      {z, Vector3d(1e-4, 0, -1).normalized(), Vector3d(0.6, 0.8, 0)},
+      {z, Vector3d(1e-4, 0, 1).normalized(), Vector3d(5e-5, 1e-6, 1).normalized()}};
+  for (const auto& shape : shapes) {
+    const Vector3<T> corner[3] = {test::stored<T>(shape[0]), test::stored<T>(shape[1]),
+                                  test::stored<T>(shape[2])};
+    const double truth =
+        double(by_angles(corner[0].template cast<double>(), corner[1].template cast<double>(),
+                         corner[2].template cast<double>()));
+    int order[3] = {0, 1, 2};
+    do {
+      // A few roundings; and the truth is a sum of angles of about 1, to 1e-19, of 5e-11.
+      EXPECT_NEAR(
+          triangle_solid_angle(corner[order[0]], corner[order[1]], corner[order[2]]) / truth, 1,
+          8 * this->kEpsilon + 1e-18 / truth)
+          << order[0] << order[1] << order[2];
+    } while (std::next_permutation(order, order + 3));
+  }
 }
 
 TYPED_TEST(SolidAngle, OfTrianglesWithNearlyOppositeCornersIsTheirAngleExcess) {
