@@ -43,7 +43,7 @@ HWY_INLINE V directional_bandwidth(D d, V bandwidth_x, V bandwidth_y, V x, V y) 
   const auto x_is_wide = hn::Lt(bandwidth_x, bandwidth_y);
   const V large = hn::Max(bandwidth_x, bandwidth_y), low = hn::Min(bandwidth_x, bandwidth_y);
   const V below_low = hn::Add(one, low), below_large = hn::Add(one, large);
-  const V shift = hn::Sub(hn::Div(one, below_low), hn::Div(one, below_large));
+  const V shift = hn::Div(hn::Div(hn::Sub(large, low), below_large), below_low);
   const V small = hn::MulAdd(hn::Set(d, 2.0f / 3), shift, low);
   const V ratio = hn::IfThenElse(hn::Gt(large, zero), hn::Div(small, large), one);
   const V norm = hn::Max(hn::Abs(x), hn::Abs(y));
