@@ -24,9 +24,9 @@ AnisotropicGaussian<T> cast(const Lobe& lobe) {
           T(lobe.amplitude)};
 }
 
-std::vector<test::Node> nodes_about_product(const Lobe& a, const Lobe& b) {
+std::vector<test::Node> nodes_about_product(const Lobe& a, const Lobe& b, int radii = 60) {
   const Lobe c = product(a, b, SmoothTerms::expanded);
-  return test::nodes_about(c.frame, c.bandwidth_x, c.bandwidth_y, 60, 120);
+  return test::nodes_about(c.frame, c.bandwidth_x, c.bandwidth_y, radii, 2 * radii);
 }
 
 /// Relative L2 error of a lobe as the product of two others.
@@ -40,9 +40,10 @@ double relative_l2(const Lobe& approximation, const Lobe& a, const Lobe& b) {
   return std::sqrt(error / norm);
 }
 
-double true_inner_product(const Lobe& a, const Lobe& b) {
+double true_inner_product(const Lobe& a, const Lobe& b, int radii = 60) {
   double sum = 0;
-  for (const auto& [v, weight] : nodes_about_product(a, b)) sum += weight * eval(a, v) * eval(b, v);
+  for (const auto& [v, weight] : nodes_about_product(a, b, radii))
+    sum += weight * eval(a, v) * eval(b, v);
   return sum;
 }
 
@@ -121,36 +122,54 @@ TEST(AsgProductForms, KeepTheirStatedErrors) {
   constexpr unsigned kSeed = 11;
   struct Row {
     double low, high;
-    double constant, expanded;            // of product: mean relative L2 over the sphere
-    double inner_expanded, inner_closed;  // of the inner products
+    double constant, expanded;  // mean relative L2 over the sphere
   };
-  // The figures of the declarations' comments, which are means over 1000 pairs. The pairs that are
+  // The figures of the declaration's comment, which are means over 1000 pairs. The pairs that are
   // far apart weigh most: 60 of them leave a third to a half of statistical error.
-  const Row rows[] = {{0.1, 1, 0.46, 0.22, 0.17, 0.16},
-                      {1, 10, 0.20, 0.12, 0.043, 0.048},
-                      {3, 30, 0.064, 0.028, 0.0066, 0.019},
-                      {10, 100, 0.013, 0.0017, 0.0004, 0.0055},
-                      {30, 300, 0.0041, 0.0002, 4e-5, 0.0019}};
+  const Row rows[] = {{0.1, 1, 0.46, 0.22},
+                      {1, 10, 0.20, 0.12},
+                      {3, 30, 0.064, 0.028},
+                      {10, 100, 0.013, 0.0017},
+                      {30, 300, 0.0041, 0.0002}};
   for (const Row& row : rows) {
     std::mt19937 random(kSeed);
-    double constant = 0, expanded = 0, inner = 0, closed = 0, norm = 0;
+    double constant = 0, expanded = 0;
     constexpr int kPairs = 60;
     for (int i = 0; i < kPairs; ++i) {
       const auto [a, b] = random_pair(row.low, row.high, random);
       constant += relative_l2(product(a, b), a, b) / kPairs;
       expanded += relative_l2(product(a, b, SmoothTerms::expanded), a, b) / kPairs;
-      const double truth = true_inner_product(a, b);
-      // Weighted so that lobes of all sizes count alike.
-      const double weight =
-          std::sqrt(a.bandwidth_x * a.bandwidth_y * b.bandwidth_x * b.bandwidth_y);
-      norm += weight * truth * truth;
-      inner += weight * std::pow(inner_product(a, b) - truth, 2);
-      closed += weight * std::pow(inner_product_closed_form(a, b) - truth, 2);
     }
     EXPECT_NEAR(constant / row.constant, 1, 0.5) << row.low << " seed " << kSeed;
     EXPECT_NEAR(expanded / row.expanded, 1, 0.5) << row.low << " seed " << kSeed;
-    EXPECT_LT(std::sqrt(inner / norm), 1.6 * row.inner_expanded) << row.low << " seed " << kSeed;
-    EXPECT_LT(std::sqrt(closed / norm), 1.6 * row.inner_closed) << row.low << " seed " << kSeed;
+  }
+}
+
+TEST(AsgProductForms, InnerProductsKeepTheirStatedErrors) {
+  constexpr unsigned kSeed = 12;
+  struct Row {
+    double low, high, expanded, closed;
+  };
+  for (const Row& row : {Row{0.1, 1, 0.17, 0.16},
+                         {1, 10, 0.043, 0.048},
+                         {3, 30, 0.0066, 0.019},
+                         {10, 100, 0.0004, 0.0055},
+                         {30, 300, 4e-5, 0.0019}}) {
+    std::mt19937 random(kSeed);
+    double expanded = 0, closed = 0, norm = 0;
+    for (int i = 0; i < 1000; ++i) {
+      const auto [a, b] = random_pair(row.low, row.high, random);
+      const double truth = true_inner_product(a, b, 24);
+      // So that lobes of all sizes count alike.
+      const double weight =
+          std::sqrt(a.bandwidth_x * a.bandwidth_y * b.bandwidth_x * b.bandwidth_y);
+      norm += weight * truth * truth;
+      expanded += weight * std::pow(inner_product(a, b) - truth, 2);
+      closed += weight * std::pow(inner_product_closed_form(a, b) - truth, 2);
+    }
+    // Two digits were stated, from other pairs; a thousand leave a tenth of statistical error.
+    EXPECT_NEAR(std::sqrt(expanded / norm) / row.expanded, 1, 0.15) << row.low << " seed " << kSeed;
+    EXPECT_NEAR(std::sqrt(closed / norm) / row.closed, 1, 0.15) << row.low << " seed " << kSeed;
   }
 }
 

@@ -311,6 +311,24 @@ TYPED_TEST(Sg, ClampedCosineKeepsItsStatedError) {
   EXPECT_GT(worst, 5e-5);  // the statement is not slack
 }
 
+TYPED_TEST(Sg, ClampedCosineIsNeverNegativeBehindTheLobe) {
+  using T = TypeParam;
+  // There the even part is a difference of numbers near exp(-L / 2), the integral exp(-L).
+  for (T sharpness = T(0.5); sharpness < T(1e4); sharpness *= T(1.05)) {
+    const SphericalGaussian<T> lobe{Vector3<T>::UnitZ(), sharpness, T(1)};
+    for (int i = 0; i <= 200; ++i) {
+      const T alpha = T(kPi<double> * (1 - 1e-3 * i));
+      const Vector3<T> normal(std::sin(alpha), 0, std::cos(alpha));
+      EXPECT_GE(clamped_cosine_integral(lobe, normal), 0) << sharpness << " " << alpha;
+    }
+    for (int i = 0; i <= 40; ++i) {  // where the difference is all rounding
+      const T c = i * std::numeric_limits<T>::epsilon() / 2 - 1;
+      const Vector3<T> normal(std::sqrt((1 - c) * (1 + c)), 0, c);
+      EXPECT_GE(clamped_cosine_integral(lobe, normal), 0) << sharpness << " " << i;
+    }
+  }
+}
+
 TYPED_TEST(Sg, ClampedCosineOfExtremeLobes) {
   using T = TypeParam;
   const T epsilon = std::numeric_limits<T>::epsilon();

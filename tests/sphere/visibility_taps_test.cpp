@@ -256,6 +256,34 @@ TYPED_TEST(VisibilityTaps, HaveTheMomentsOfTheirSlabsAtEveryBandwidth) {
   }
 }
 
+TYPED_TEST(VisibilityTaps, RowsOfTheTableHoldTheMomentsOfTheirSlabs) {
+  using T = TypeParam;
+  for (const int count : {2, 5, kMaxTaps}) {
+    const QuantileTapTable<T> table = make_quantile_taps<T>(count);
+    for (int i = 1; i < QuantileTapTable<T>::kIntervals; ++i) {
+      const double u = double(i) / QuantileTapTable<T>::kIntervals, root = u / (1 - u);
+      // Of exp(-root^2 y^2) on [-1, 1]: a slab's mean from its ends' values, and the variance.
+      const double mass = std::sqrt(kPi<double>) / root * std::erf(root);
+      const auto falls = [&](int k) {  // the value at the lower end of slab k
+        if (k == 0 || k == count) return std::exp(-root * root);
+        const double at = inverse_erf((2.0 * k / count - 1) * std::erf(root));
+        return std::exp(-at * at);
+      };
+      const double variance = 1 / (2 * root * root) - std::exp(-root * root) / (root * root * mass);
+      double sum = 0;
+      for (int k = 0; k < count; ++k) {
+        const double mean = count * (falls(k) - falls(k + 1)) / (2 * root * root * mass);
+        const double sine = table.row[i].sine[k] / (1 + root);
+        const double deviation = table.row[i].deviation[k] / (1 + root);
+        sum += (sine * sine + deviation * deviation) / count;
+        // Midpoints: a slab's mean to 3e-6 of its width, which is 8.5 deviations at most.
+        EXPECT_NEAR(sine, mean, 3e-5 * std::sqrt(variance)) << root << " " << k << " of " << count;
+      }
+      EXPECT_NEAR(sum / variance, 1, 1e-4) << root << " " << count;
+    }
+  }
+}
+
 TYPED_TEST(VisibilityTaps, FindTheLongAxisWhereverItIs) {
   using T = TypeParam;
   const auto table = make_quantile_taps<T>(3);

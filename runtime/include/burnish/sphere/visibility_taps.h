@@ -32,7 +32,7 @@ namespace internal {
 /// Mean and deviation of y under exp(-root^2 y^2) on [from, to].
 inline std::array<double, 2> slab_moments(double root, double from, double to) {
   double mass = 0, mean = 0, square = 0;
-  constexpr int kSteps = 512;  // midpoints: 1e-6 of a slab's width
+  constexpr int kSteps = 512;  // midpoints: 3e-6 of a slab's width
   for (int i = 0; i < kSteps; ++i) {
     const double y = from + (to - from) * (i + 0.5) / kSteps;
     const double density = std::exp(-root * root * y * y);
