@@ -151,9 +151,9 @@ TYPED_TEST(AsgSampling, TheAzimuthRunsFromTheLargerBandwidthToTheOther) {
     AnisotropicGaussian<T> lobe;
     lobe.bandwidth_x = T(bx);
     lobe.bandwidth_y = T(by);
-    const auto narrow_and_wide = [&](double u) {
+    const auto narrow_and_wide = [&, x_is_narrow = bx > by](double u) {
       const Vector3<T> v = sample(lobe, T(u), T(0.5));
-      return bx > by ? Vector2<T>(v.x(), v.y()) : Vector2<T>(v.y(), v.x());
+      return x_is_narrow ? Vector2<T>(v.x(), v.y()) : Vector2<T>(v.y(), v.x());
     };
     const T tolerance = 8 * std::numeric_limits<T>::epsilon();
     EXPECT_GT(narrow_and_wide(0).x(), 0);

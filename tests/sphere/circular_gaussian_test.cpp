@@ -262,8 +262,8 @@ TYPED_TEST(Longitudinal, IntegralWithTheCosineKeepsItsStatedError) {
                                                  {3.0, 4.0, 1.0}}) {
         const LongitudinalGaussian<T> g{T(center), T(sharpness), T(2)};
         const double deviation = sharpness > 1 ? 1 / std::sqrt(sharpness) : 1.0;
-        const auto bound = [&](double x) {
-          return T(std::clamp(deviations > 0 ? center + x * deviation : x, -1.57, 1.57));
+        const auto bound = [&, relative = deviations > 0](double x) {
+          return T(std::clamp(relative ? center + x * deviation : x, -1.57, 1.57));
         };
         const double k = g.sharpness, c = g.center, low = double(bound(from)) - c,
                      high = double(bound(to)) - c;
