@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "burnish/sphere/frame.h"
+#include "burnish/sphere/gauss_legendre.h"
 #include "burnish/sphere/special_functions.h"
 #include "burnish/sphere/spherical_gaussian.h"
 
@@ -121,20 +122,15 @@ inline constexpr T kDecay = std::numeric_limits<T>::digits > 24 ? T(37) : T(17);
 /// (float) and 3e-12 (double) for a Gaussian cut off by kDecay, times something smooth.
 template <class T, class F>
 T integrate_smooth(T from, T to, const F& f) {
-  constexpr T kNode[] = {T(0.9491079123427585), T(0.7415311855993945), T(0.4058451513773972)};
-  constexpr T kWeight[] = {T(0.1294849661688697), T(0.2797053914892766), T(0.3818300505051189)};
-  constexpr T kMiddleWeight = T(0.4179591836734694);
+  const auto& rule = unit_gauss<7>();
   constexpr int kPanels = std::numeric_limits<T>::digits > 24 ? 18 : 6;
   if (!(from < to)) return 0;
-  const T half = (to - from) / (2 * kPanels);
+  const T step = (to - from) / kPanels;
   T sum = 0;
-  for (int panel = 0; panel < kPanels; ++panel) {
-    const T middle = from + half * T(2 * panel + 1);
-    sum += kMiddleWeight * f(middle);
-    for (int i = 0; i < 3; ++i)
-      sum += kWeight[i] * (f(middle - half * kNode[i]) + f(middle + half * kNode[i]));
-  }
-  return half * sum;
+  for (int panel = 0; panel < kPanels; ++panel)
+    for (int i = 0; i < 7; ++i)
+      sum += T(rule.weight[i]) * f(from + step * (T(panel) + T(rule.node[i])));
+  return step * sum;
 }
 
 /// Least distance of [from, to] from 0.
