@@ -52,7 +52,7 @@ T bandwidth_across(const AnisotropicGaussian<T>& lobe, const Vector3<T>& gradien
 
 /// The bandwidth that makes visible_fraction_directional of an ASG's half-space most accurate:
 /// bandwidth_across, corrected for what it neglects. Over random lobes (sqrt(b_x b_y) .01..300, b_x
-/// / b_y 1..1000) the fraction then errs by .003 (mean) and .036 (worst); without, by .006 and .18.
+/// / b_y 1..1000) the fraction then errs by .003 (mean) and .039 (worst); without, by .006 and .18.
 template <class T>
 T directional_bandwidth(const AnisotropicGaussian<T>& lobe, const Vector3<T>& gradient) {
   // The disc's edge makes a long axis that reaches it shorter than its bandwidth says (fitted).
