@@ -200,7 +200,8 @@ struct WarpAmplitude : Relative {
 struct WarpMean {
   // Far behind the horizon, where the amplitude vanishes, widths hang on a difference of tails.
   static double scale(const Extreme<double>& x) { return x.angle > 3 ? kInfinity : x.narrow; }
-  static constexpr Claims kClaims = {"warp, mean form: bandwidths", kRatio | kAngle, 1e-3};
+  static constexpr Claims kClaims = {"warp, mean form: bandwidths", kRatio | kAngle,
+                                     4 * kFewRoundings};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {
     const auto warped =
@@ -226,7 +227,8 @@ struct WarpMeanMass {
 
 struct WarpMeanIntegral {
   static double scale(const Extreme<double>& x) { return 4 * asg_integral_exact(x.narrow, x.wide); }
-  static constexpr Claims kClaims = {"warp, mean form: integral", kRatio | kAngle, 1e-4};
+  static constexpr Claims kClaims = {"warp, mean form: integral", kRatio | kAngle,
+                                     2 * kFewRoundings};
   template <class T>
   static std::vector<T> values(const Extreme<T>& x) {
     return {integral(
