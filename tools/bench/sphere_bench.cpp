@@ -351,6 +351,9 @@ std::vector<Measured> batch_forms(Inputs& in, const Truths& truths) {
            [&in, out] { batch::inner_product(in.round_lobes[0], in.round_soa(), out); }),
       form("SG in a half-space", "fast", hemisphere_at(HemisphereLevel::fast),
            &truths.sg_half_space),
+      form(
+          "SG in a half-space", "fast, one lobe",
+          [&in, out] { batch::visible_fraction_hemisphere(in.sharpness[0], in.sg_distance, out); }),
       form("SG in a half-space", "exact", hemisphere_at(HemisphereLevel::exact),
            &truths.sg_half_space),
       form(kAsgEval, "", [&in, out] { batch::eval(in.lobes[0], in.soa(), out); }),

@@ -64,6 +64,15 @@ void hemisphere_batch(size_t size, const float* sharpness, const float* distance
       sharpness, distances);
 }
 
+void hemisphere_of_one_batch(size_t size, float sharpness, const float* distances, float* results) {
+  const D d;
+  const HemisphereShape<V> shape = prepare_hemisphere(d, hn::Set(d, sharpness));
+  for_each(
+      size, results,
+      [&](D d, V distance) HWY_ATTR { return visible_fraction_hemisphere(d, shape, distance); },
+      distances);
+}
+
 void hemisphere_exact_batch(size_t size, const float* sharpness, const float* distances,
                             float* results) {
   for_each(
@@ -116,6 +125,7 @@ HWY_EXPORT(asg_integral_exact_batch);
 HWY_EXPORT(directional_batch);
 HWY_EXPORT(directional_bandwidth_batch);
 HWY_EXPORT(hemisphere_batch);
+HWY_EXPORT(hemisphere_of_one_batch);
 HWY_EXPORT(hemisphere_exact_batch);
 HWY_EXPORT(sg_integral_batch);
 HWY_EXPORT(convolve_batch);
@@ -162,6 +172,12 @@ void visible_fraction_hemisphere(std::span<const float> sharpness, std::span<con
     HWY_DYNAMIC_DISPATCH(hemisphere_exact_batch)
     (results.size(), sharpness.data(), distances.data(), results.data());
   }
+}
+
+void visible_fraction_hemisphere(float sharpness, std::span<const float> distances,
+                                 std::span<float> results) noexcept {
+  HWY_DYNAMIC_DISPATCH(hemisphere_of_one_batch)
+  (results.size(), sharpness, distances.data(), results.data());
 }
 
 void sg_integral(std::span<const float> sharpness, std::span<float> results) noexcept {

@@ -117,11 +117,15 @@ HWY_INLINE V hemisphere_fraction(D d, const HemisphereShape<V>& shape, V half_si
   return visible_from_hidden(d, hn::MulAdd(reach, tail, shape.opposite), half_sine);
 }
 
-/// visible_fraction_hemisphere, fast level.
+/// visible_fraction_hemisphere, fast level, of a prepared sharpness and of any.
+template <class D, class V>
+HWY_INLINE V visible_fraction_hemisphere(D d, const HemisphereShape<V>& shape, V distance) {
+  const V half = hn::Mul(hn::Set(d, 0.5f), held_distance(d, distance));
+  return hemisphere_fraction(d, shape, sine_of_small(d, half));
+}
 template <class D, class V>
 HWY_INLINE V visible_fraction_hemisphere(D d, V sharpness, V distance) {
-  const V half = hn::Mul(hn::Set(d, 0.5f), held_distance(d, distance));
-  return hemisphere_fraction(d, prepare_hemisphere(d, sharpness), sine_of_small(d, half));
+  return visible_fraction_hemisphere(d, prepare_hemisphere(d, sharpness), distance);
 }
 
 /// visible_fraction_hemisphere, exact level: absolute error 6e-7. See half_space.h. Both of its
