@@ -104,7 +104,7 @@ void visible_fraction_hemisphere(std::span<const float> sharpness, std::span<con
                                  std::span<float> results,
                                  HemisphereLevel level = HemisphereLevel::fast) noexcept;
 
-/// Of one lobe past many boundaries, by the fast level: half the time.
+/// Of one lobe past many boundaries, by the fast level, in two thirds of the time.
 void visible_fraction_hemisphere(float sharpness, std::span<const float> distances,
                                  std::span<float> results) noexcept;
 
