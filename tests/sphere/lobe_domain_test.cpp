@@ -33,6 +33,8 @@ TYPED_TEST(LobeDomain, AcceptsEveryWidthAndAmplitude) {
     EXPECT_EQ(domain_error(SphericalGaussian<T>{Vector3<T>::UnitX(), value, -value}), "");
     EXPECT_EQ(domain_error(AnisotropicGaussian<T>{{}, value, value, -value}), "");
     EXPECT_EQ(domain_error(NormalisedAsg<T>{{}, value, value, -value}), "");
+    EXPECT_EQ(domain_error(CircularGaussian<T>{-value, value, -value}), "");
+    EXPECT_EQ(domain_error(LongitudinalGaussian<T>{-value, value, -value}), "");
   }
 }
 
@@ -91,6 +93,11 @@ TYPED_TEST(LobeDomain, NamesTheFieldTheValueAndWhatIsExpected) {
             "bandwidth_x is -2.000000, expected a finite number >= 0");
   EXPECT_EQ(answer<Asg>([&](Asg& lobe) { lobe.bandwidth_y = infinity; }),
             "bandwidth_y is inf, expected a finite number >= 0");
+  EXPECT_EQ(answer<CircularGaussian<T>>([&](CircularGaussian<T>& lobe) { lobe.center = nan; }),
+            "center is nan, expected a finite number");
+  EXPECT_EQ(
+      answer<LongitudinalGaussian<T>>([](LongitudinalGaussian<T>& lobe) { lobe.sharpness = -3; }),
+      "sharpness is -3.000000, expected a finite number >= 0");
   EXPECT_EQ(answer<Nasg>([](Nasg& lobe) { lobe.anisotropy = -1; }),
             "anisotropy is -1.000000, expected a finite number >= 0");
 }

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "burnish/sphere/anisotropic_gaussian.h"
+#include "burnish/sphere/circular_gaussian.h"
 #include "burnish/sphere/normalised_asg.h"
 #include "burnish/sphere/spherical_gaussian.h"
 
@@ -28,6 +29,10 @@ template <class T>
 std::string domain_error(const AnisotropicGaussian<T>& lobe);
 template <class T>
 std::string domain_error(const NormalisedAsg<T>& lobe);
+template <class T>
+std::string domain_error(const CircularGaussian<T>& lobe);
+template <class T>
+std::string domain_error(const LongitudinalGaussian<T>& lobe);
 /// @}
 
 /// The lobe itself, or std::invalid_argument with its domain_error.
@@ -97,6 +102,27 @@ std::string domain_error(const NormalisedAsg<T>& lobe) {
                                 internal::scalar_error("sharpness", lobe.sharpness, false),
                                 internal::scalar_error("anisotropy", lobe.anisotropy, false),
                                 internal::scalar_error("amplitude", lobe.amplitude, true)});
+}
+
+namespace internal {
+
+template <class Lobe>
+std::string angular_lobe_error(const Lobe& lobe) {
+  return first_error({scalar_error("center", lobe.center, true),
+                      scalar_error("sharpness", lobe.sharpness, false),
+                      scalar_error("amplitude", lobe.amplitude, true)});
+}
+
+}  // namespace internal
+
+template <class T>
+std::string domain_error(const CircularGaussian<T>& lobe) {
+  return internal::angular_lobe_error(lobe);
+}
+
+template <class T>
+std::string domain_error(const LongitudinalGaussian<T>& lobe) {
+  return internal::angular_lobe_error(lobe);
 }
 
 }  // namespace burnish
