@@ -110,9 +110,9 @@ Inputs make_inputs() {
     in.round_lobes.push_back({axis, 2 * mean, 1});
     in.round_others.push_back({v, mean, 1});
     in.directions.push_back(v);
-    for (int axis = 0; axis < 3; ++axis) {
-      in.frame_x[axis].push_back(lobe.frame.x[axis]);
-      in.frame_z[axis].push_back(lobe.frame.z[axis]);
+    for (int component = 0; component < 3; ++component) {
+      in.frame_x[component].push_back(lobe.frame.x[component]);
+      in.frame_z[component].push_back(lobe.frame.z[component]);
     }
     in.x.push_back(v.x());
     in.y.push_back(v.y());

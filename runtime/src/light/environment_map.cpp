@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "burnish/sphere/solid_angle.h"
+
 namespace burnish {
 
 Vector2<double> latlong_from_direction(const Vector3d& d) {
@@ -21,9 +23,7 @@ Vector3d direction_from_latlong(double u, double v) {
 }
 
 double latlong_pixel_solid_angle(const Image& environment, int row) {
-  const double top = (0.5 - double(row) / environment.height) * kPi<double>;
-  const double bottom = (0.5 - double(row + 1) / environment.height) * kPi<double>;
-  return (std::sin(top) - std::sin(bottom)) * 2 * kPi<double> / environment.width;
+  return latlong_pixel_solid_angle<double>(row, environment.width, environment.height);
 }
 
 const Rgb& eval_environment(const Image& environment, const Vector3d& direction) {

@@ -27,6 +27,12 @@ T asg_integral_fast(T bandwidth_x, T bandwidth_y) {
   return std::min(kPi<T> / (std::sqrt(bandwidth_x) * std::sqrt(bandwidth_y)), kPi<T>);
 }
 
+namespace internal {
+
+/// What the disc's edge cuts off an ASG is exp(-bandwidth): below the last bit of T from here on.
+template <class T>
+inline constexpr T kEdgeOutOfSight = std::is_same_v<T, float> ? T(17) : T(37);
+
 /// A disc Gaussian in polar coordinates whose azimuth psi is that of an ellipse: tan(azimuth) =
 /// tan(psi) sqrt((bandwidth_x + offset) / (bandwidth_y + offset)). Equal steps in psi then follow
 /// the lobe, however long, and
@@ -64,6 +70,8 @@ const std::array<T, N>& quarter_turn_cosines_squared() {
   return table;
 }
 
+}  // namespace internal
+
 /// The integral by N midpoints of a quarter turn of psi. The worst relative error over all
 /// bandwidths from 0 on falls by seven with each point, because the offset keeps exp(-k) away from
 /// its essential singularity: N = 1: 4.4 %, 2: 0.40 %, 3: 0.052 %, 4: 7.4e-5, 5: 9.7e-6, 6: 1.3e-6,
@@ -79,8 +87,9 @@ T asg_integral_midpoints(T bandwidth_x, T bandwidth_y) {
   const T large = std::max(bandwidth_x, bandwidth_y), small = std::min(bandwidth_x, bandwidth_y);
   const T squeeze = (small + kOffset) / (large + kOffset);
   T sum = 0;
-  for (const T cos_squared : quarter_turn_cosines_squared<T, N>()) {
-    const T k = asg_azimuth(large, small, squeeze, cos_squared, 1 - cos_squared).bandwidth;
+  for (const T cos_squared : internal::quarter_turn_cosines_squared<T, N>()) {
+    const T k =
+        internal::asg_azimuth(large, small, squeeze, cos_squared, 1 - cos_squared).bandwidth;
     sum += (k + kOffset) * one_minus_exp_over(k);
   }
   return kPi<T> / (std::sqrt(large + kOffset) * std::sqrt(small + kOffset)) * (sum / T(N));
@@ -89,9 +98,7 @@ T asg_integral_midpoints(T bandwidth_x, T bandwidth_y) {
 template <class T>
 T asg_integral_exact(T bandwidth_x, T bandwidth_y) {
   constexpr bool is_float = std::is_same_v<T, float>;
-  // What the disc's edge cuts off is exp(-bandwidth): below the last bit from here on.
-  constexpr T kEdgeOutOfSight = is_float ? T(17) : T(37);
-  if (std::min(bandwidth_x, bandwidth_y) > kEdgeOutOfSight)
+  if (std::min(bandwidth_x, bandwidth_y) > internal::kEdgeOutOfSight<T>)
     return asg_integral_fast(bandwidth_x, bandwidth_y);
   constexpr int kPoints = is_float ? 7 : 18;
   return asg_integral_midpoints<kPoints>(bandwidth_x, bandwidth_y);

@@ -61,7 +61,6 @@ T sample_asg_azimuth(T large, T small, T squeeze, T offset, T u) {
 /// edge is out of sight; else its density is the g of asg_integral.h, inverted numerically.
 template <class T>
 Vector3<T> sample(const AnisotropicGaussian<T>& lobe, T u, T v) {
-  constexpr T kEdgeOutOfSight = std::is_same_v<T, float> ? T(17) : T(37);
   const bool x_is_narrow = lobe.bandwidth_x >= lobe.bandwidth_y;
   const T large = x_is_narrow ? lobe.bandwidth_x : lobe.bandwidth_y;
   const T small = x_is_narrow ? lobe.bandwidth_y : lobe.bandwidth_x;
@@ -73,7 +72,7 @@ Vector3<T> sample(const AnisotropicGaussian<T>& lobe, T u, T v) {
   const int quarter = static_cast<int>(4 * u_azimuth);
   const T along = 4 * u_azimuth - T(quarter);
   const T fraction = quarter % 2 == 0 ? along : 1 - along;
-  const bool inside = small > kEdgeOutOfSight;
+  const bool inside = small > internal::kEdgeOutOfSight<T>;
   const T offset = inside ? T(0) : T(3);
   const T squeeze = (small + offset) / (large + offset);
   const T psi = inside ? fraction * (kPi<T> / 2)
