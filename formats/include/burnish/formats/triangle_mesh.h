@@ -18,6 +18,7 @@ struct TriangleMesh {
   std::vector<Eigen::Vector2f> uvs;        ///< #V, or empty
   std::vector<std::uint32_t> file_vertex;  ///< #V, index of the vertex in the mesh file
   std::vector<Triangle> triangles;         ///< #F
+  std::vector<MeshPart> parts;  ///< in order, without gaps; none: all is one part named `name`
 };
 
 }  // namespace burnish

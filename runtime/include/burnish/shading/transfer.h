@@ -11,13 +11,39 @@ namespace burnish {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// Mean and eigen-SSDFs of one PCA basis, on the equal-area octahedral map (world frame), in
-/// radians. `eigen` is texel-major so that a lookup is four contiguous dot products.
+/// A mesh of a scene: what of the transfer's vertices and triangles came from it.
+struct MeshPart {
+  std::string name;  ///< file name without its folder, or a scene's name; an instance's own
+  std::uint32_t first_vertex = 0, vertices = 0;
+  std::uint32_t first_triangle = 0, triangles = 0;
+};
+
+/// Mean and eigen-SSDFs of one PCA basis, on the equal-area octahedral map (world frame).
+/// `eigen` is texel-major so that a lookup is four contiguous dot products.
 struct SsdfBasis {
-  int resolution = 0;        ///< texels along an edge of the map
-  int terms = 0;             ///< number of eigen-SSDFs
+  int resolution = 0;  ///< texels along an edge of the map
+  int terms = 0;       ///< number of eigen-SSDFs
+  /// s > 0: what is compressed is tanh(distance / s), in -1..1; 0: the distance itself, in radians.
+  float amplitude_rad = 0;
   std::vector<float> mean;   ///< [resolution^2]
   std::vector<float> eigen;  ///< [resolution^2][terms]
+};
+
+/// Mean and eigenimages of one basis of the visibility ladder, on octahedral maps (world frame):
+/// at each level the fraction (0..1) of an isotropic lobe that is visible, around each direction.
+/// All levels share a vertex's coefficients.
+struct LadderBasis {
+  int resolution = 0;             ///< texels along an edge of each level's map
+  int terms = 0;                  ///< number of eigenimages
+  std::vector<float> bandwidths;  ///< [levels] of the lobes, rising (an SG's sharpness is twice it)
+  std::vector<float> mean;        ///< [levels][resolution^2]
+  std::vector<float> eigen;       ///< [levels][resolution^2][terms]
+};
+
+/// Relative RMS error of the visible fraction of isotropic lobes of one bandwidth.
+struct LobeError {
+  double bandwidth = 0;
+  double relative_rms = 0;
 };
 
 /// How a transfer was made. Holds only what is the same on every run with equal inputs.
@@ -26,12 +52,18 @@ struct Provenance {
   std::string mesh_name;  ///< file name without its folder, or the name of the procedural scene
   std::string
       mesh_hash;  ///< 64-bit FNV-1a of positions, normals, tangents and triangles, 16 hex digits
-  std::string occluder_hash;       ///< likewise of all occluders; empty without any
-  int directions = 0;              ///< visibility was sampled on directions^2 texels
-  int training_vertices = 0;       ///< vertices the basis was trained on
-  std::uint64_t rays = 0;          ///< cast in all
-  double residual_rms_rad = 0;     ///< of SSDF values over all vertices, after compression
-  double wrong_sign_fraction = 0;  ///< of SSDF texels over all vertices, after compression
+  std::string occluder_hash;             ///< likewise of all occluders; empty without any
+  int directions = 0;                    ///< visibility was sampled on directions^2 texels
+  int coarsest = 0;                      ///< ... on coarsest^2 first, then where it changes
+  double origin_offset = 0;              ///< by which rays left the surface, world units
+  int training_vertices = 0;             ///< vertices the basis was trained on
+  std::uint64_t rays = 0;                ///< cast in all
+  int residual_vertices = 0;             ///< vertices the residuals below are of
+  bool residual_held_out = false;        ///< the basis was not trained on them
+  double residual_rms_rad = 0;           ///< of SSDF values, after compression
+  double wrong_sign_fraction = 0;        ///< of SSDF texels, after compression
+  std::vector<LobeError> ssdf_errors;    ///< of lobes' visibility through the compressed SSDF
+  std::vector<LobeError> ladder_errors;  ///< ... and through the ladder, one a level
 };
 
 /// What a bake produces: the receiver mesh and the compressed visibility of each of its vertices.
@@ -43,9 +75,20 @@ struct Transfer {
   std::vector<std::uint32_t> file_vertex;  ///< #V, index of the vertex in the mesh file
   std::vector<Triangle> triangles;         ///< #F
 
-  std::vector<SsdfBasis> bases;        ///< one or more; equal resolution and terms
+  std::vector<MeshPart> parts;  ///< in order, without gaps; none: one nameless part
+
+  /// Equal resolution, terms and amplitude. None: nothing occludes but each vertex's horizon; then
+  /// there are no ids, coefficients or ladder either.
+  std::vector<SsdfBasis> bases;
   std::vector<std::uint8_t> basis_id;  ///< #V
   std::vector<float> coefficients;     ///< [#V][terms]
+
+  /// None (no ladder), one, or one for each of `bases` (then basis_id tells which). Equal
+  /// resolution, terms and bandwidths.
+  std::vector<LadderBasis> ladder_bases;
+  std::vector<float> ladder_coefficients;  ///< [#V][ladder terms]
+  /// Lobes below this bandwidth are better served by the ladder than by the SSDF; 0 without one.
+  float ladder_crossover = 0;
 
   std::vector<Vector3f> occluder_positions;  ///< geometry that casts shadows and is not shaded
   std::vector<Triangle> occluder_triangles;
@@ -56,6 +99,15 @@ struct Transfer {
   int terms() const { return bases.empty() ? 0 : bases.front().terms; }
   const float* vertex_coefficients(size_t vertex) const {
     return coefficients.data() + vertex * static_cast<size_t>(terms());
+  }
+  int ladder_terms() const { return ladder_bases.empty() ? 0 : ladder_bases.front().terms; }
+  /// Null without a ladder.
+  const LadderBasis* vertex_ladder_basis(size_t vertex) const {
+    if (ladder_bases.empty()) return nullptr;
+    return &ladder_bases[ladder_bases.size() == 1 ? 0 : basis_id[vertex]];
+  }
+  const float* vertex_ladder_coefficients(size_t vertex) const {
+    return ladder_coefficients.data() + vertex * static_cast<size_t>(ladder_terms());
   }
 };
 
