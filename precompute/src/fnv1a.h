@@ -24,6 +24,8 @@ class Fnv1a {
     }
   }
 
+  std::uint64_t value() const { return hash_; }
+
   /// 16 hex digits.
   std::string hex() const {
     std::string digits(16, '0');

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <span>
+#include <type_traits>
+#include <vector>
+
+namespace burnish {
+
+/// Puts plain values one after the other.
+class ByteWriter {
+ public:
+  template <class T>
+  void put(std::span<const T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    const auto bytes = std::as_bytes(values);
+    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+  }
+  template <class T>
+  void put(const T& value) {
+    put(std::span<const T>(&value, 1));
+  }
+  /// With its length.
+  template <class T>
+  void put_vector(const std::vector<T>& values) {
+    put(std::uint64_t{values.size()});
+    put(std::span<const T>(values));
+  }
+
+  std::span<const std::byte> bytes() const { return bytes_; }
+
+ private:
+  std::vector<std::byte> bytes_;
+};
+
+/// Takes them back. Reading past the end gives zeros and makes complete() false.
+class ByteReader {
+ public:
+  explicit ByteReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
+
+  template <class T>
+  void get(std::span<T> values) {
+    static_assert(std::is_trivially_copyable_v<T>);
+    if (values.size_bytes() > bytes_.size()) {
+      bytes_ = {};
+      short_ = true;
+      std::memset(static_cast<void*>(values.data()), 0, values.size_bytes());
+      return;
+    }
+    if (values.empty()) return;
+    std::memcpy(static_cast<void*>(values.data()), bytes_.data(), values.size_bytes());
+    bytes_ = bytes_.subspan(values.size_bytes());
+  }
+  template <class T>
+  T get() {
+    T value = {};
+    get(std::span<T>(&value, 1));
+    return value;
+  }
+  template <class T>
+  std::vector<T> get_vector() {
+    const auto size = get<std::uint64_t>();
+    std::vector<T> values(size <= bytes_.size() / sizeof(T) ? size : 0);
+    if (values.size() != size) short_ = true;
+    get(std::span<T>(values));
+    return values;
+  }
+
+  /// Everything was there, and nothing is left.
+  bool complete() const { return !short_ && bytes_.empty(); }
+
+ private:
+  std::span<const std::byte> bytes_;
+  bool short_ = false;
+};
+
+}  // namespace burnish
