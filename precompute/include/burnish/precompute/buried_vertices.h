@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,30 +10,38 @@
 
 namespace burnish {
 
-/// Vertices that are not where a vertex can see from.
+/// Vertices that are not where a vertex can see from. Each is counted once, as the first that fits:
+///
+/// - covered: another surface, facing the same way, lies above the ray's origin and within 8
+///   offsets of the vertex (a decal under its wall). A larger offset takes the origin past it.
+/// - pierced: between the vertex and its ray's origin, or at the vertex, lies another surface that
+///   faces it (a box that stands exactly on a floor): rays start on the wrong side. A smaller
+///   offset or a gap helps; of surfaces that coincide exactly, one can hide the other from us.
+/// - inside: of 64 rays over its hemisphere at least 56 meet the back of a triangle first. No
+///   offset helps. A vertex in a body with a wide opening, or below the edge of a single sheet, is
+///   not found.
+///
+/// A triangle's front is the side its normals point to.
+enum class Burial { none, covered, pierced, inside };
+
 struct BuriedVertices {
   static constexpr std::size_t kExamples = 8;
 
-  struct Part {
-    std::uint64_t inside = 0, touching = 0;
+  struct Kind {
+    std::uint64_t count = 0;
+    std::vector<std::uint32_t> first;  ///< the first kExamples vertices
+    std::vector<std::uint64_t>
+        per_part;  ///< in the order of the receiver's parts; one if it has none
   };
-  std::uint64_t inside = 0;    ///< within a body, or behind a surface that covers them
-  std::uint64_t touching = 0;  ///< on or just under another surface, and not inside
-  std::vector<std::uint32_t> first_inside, first_touching;  ///< the first kExamples of each
-  std::vector<Part> parts;  ///< in the order of the receiver's parts; one if it has none
+  Kind covered, pierced, inside;
+
+  std::uint64_t count() const { return covered.count + pierced.count + inside.count; }
 };
 
 /// Looks for vertices of `receiver` that lie inside or on other geometry. `scene` holds the
 /// receiver and then the occluders, in this order; rays leave `origin_offset` (world units; 0:
-/// scene.origin_offset()) from the surface. Same result at any number of threads.
-///
-/// - Inside: of 64 rays over the vertex's hemisphere at least 56 meet the back of a triangle first.
-///   The front is the side its normals point to. A vertex below a single sheet that does not fill
-///   its view, or sunk beside one, is not found; nor is one in a body with several openings.
-/// - Touching: another triangle crosses the normal within 8 offsets above the vertex or one below.
-///   Of surfaces that coincide exactly, one can hide the other.
-///
-/// A vertex that cannot be baked (bake.h) is neither.
+/// scene.origin_offset()) from the surface. A vertex that cannot be baked (bake.h) or is in no
+/// triangle is not counted. 20 rays or so a vertex; same result at any number of threads.
 BuriedVertices find_buried_vertices(const RayScene& scene, const TriangleMesh& receiver,
                                     std::span<const TriangleMesh> occluders,
                                     double origin_offset = 0);

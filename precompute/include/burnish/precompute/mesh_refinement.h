@@ -36,11 +36,14 @@ DensityReport check_density(const TriangleMesh& mesh, const RayScene& scene,
                             double threshold = kDensityThreshold, double origin_offset = 0,
                             std::size_t worst = 5, const Progress& progress = {});
 
+/// The shortest edge a refinement makes by default, as a share of the mesh's largest extent.
+inline constexpr double kDefaultMinEdge = 1.0 / 512;
+
 /// Dials of a refinement.
 struct RefinementOptions {
   double max_difference =
       0.1;              ///< edges whose ends (or end and middle) differ more are halved, > 0
-  double min_edge = 0;  ///< world units: no shorter edge comes about; > 0
+  double min_edge = 0;  ///< world units: no edge is halved into shorter ones; 0: kDefaultMinEdge
   std::uint64_t max_vertices = 10'000'000;  ///< of the refined mesh
   double origin_offset = 0;                 ///< world units; 0: scene.origin_offset()
 };
