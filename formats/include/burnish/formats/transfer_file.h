@@ -17,9 +17,12 @@ inline constexpr int kMaxTerms = 1024;
 inline constexpr int kMaxBases = 256;
 /// @}
 
-/// How coefficients are stored. float16 halves the file; its rounding error is at most 2^-11 of a
-/// coefficient.
-enum class CoefficientType { float32, float16 };
+/// How coefficients and eigenimages are stored.
+enum class CoefficientType {
+  float32,  ///< as they are: the transfer reads back equal
+  float16,  ///< rounded by at most 2^-11 of a value
+  int16,    ///< coefficients as multiples of one step, eigenimages as float16
+};
 
 struct WriteTransferOptions {
   CoefficientType coefficient_type = CoefficientType::float32;
