@@ -6,11 +6,13 @@
 #include <limits>
 #include <mutex>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "burnish/formats/error.h"
+#include "point_tree.h"
 
 #if __has_include(<embree4/rtcore.h>)
 #include <embree4/rtcore.h>
@@ -59,6 +61,11 @@ bool is_usable(const Vector3f& p) {
          std::abs(p.z()) <= kLargestCoordinate;  // false for NaN
 }
 
+bool is_usable(const Triangle& triangle, const Vector3f* positions) {
+  return std::all_of(triangle.begin(), triangle.end(),
+                     [&](std::uint32_t v) { return is_usable(positions[v]); });
+}
+
 struct Device {
   RTCDevice handle = nullptr;
   std::mutex mutex;
@@ -90,11 +97,6 @@ struct Device {
   }
 };
 
-struct Mesh {
-  std::vector<Vector3f> positions;
-  std::vector<Triangle> triangles;
-};
-
 // Bounds of the corners of all triangles that can be hit.
 struct Bounds {
   Vector3d lower = Vector3d::Constant(std::numeric_limits<double>::infinity());
@@ -107,22 +109,19 @@ struct Bounds {
   bool empty() const { return !(lower.x() <= upper.x()); }
 };
 
-Bounds bounds_of(const std::vector<Mesh>& meshes) {
-  Bounds bounds;
-  for (const Mesh& mesh : meshes)
-    for (const Triangle& triangle : mesh.triangles)
-      if (std::all_of(triangle.begin(), triangle.end(),
-                      [&](std::uint32_t v) { return is_usable(mesh.positions[v]); }))
-        for (const std::uint32_t v : triangle) bounds.include(mesh.positions[v]);
-  return bounds;
-}
-
 }  // namespace
 
 struct RayScene::Impl {
   Device device;
   RTCScene scene = nullptr;
-  std::vector<Mesh> pending;
+  // A mesh's geometry, with world coordinates, from add_mesh() to commit().
+  struct PendingMesh {
+    RTCGeometry geometry = nullptr;  // none without triangles
+    std::size_t vertices = 0, triangles = 0;
+  };
+  std::vector<PendingMesh> pending;
+  Bounds bounds;
+  PointTree corners;  // of all triangles that can be hit, inside
   bool committed = false;
 
   // inside = (world - center) * scale, in double, rounded once; scale is a power of two, so that
@@ -138,7 +137,11 @@ struct RayScene::Impl {
     rtcSetSceneBuildQuality(scene, RTC_BUILD_QUALITY_HIGH);
     device.check("making a scene");
   }
-  ~Impl() { rtcReleaseScene(scene); }
+  ~Impl() {
+    for (const PendingMesh& mesh : pending)
+      if (mesh.geometry) rtcReleaseGeometry(mesh.geometry);
+    rtcReleaseScene(scene);
+  }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
 
@@ -147,7 +150,6 @@ struct RayScene::Impl {
   }
 
   void choose_scale() {
-    const Bounds bounds = bounds_of(pending);
     if (bounds.empty()) return;
     center = (bounds.lower + bounds.upper) / 2;
     const double size = (bounds.upper - bounds.lower).maxCoeff();
@@ -162,28 +164,46 @@ struct RayScene::Impl {
         std::ldexp(size, -16), 4 * largest * double(std::numeric_limits<float>::epsilon())));
   }
 
-  void build(const Mesh& mesh, unsigned id) {
+  void add(std::span<const Vector3f> positions, std::span<const Triangle> triangles) {
+    pending.emplace_back();
+    if (triangles.empty()) return;
     RTCGeometry geometry = rtcNewGeometry(device.handle, RTC_GEOMETRY_TYPE_TRIANGLE);
-    auto* vertices = static_cast<float*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                3 * sizeof(float), mesh.positions.size()));
-    auto* indices = static_cast<std::uint32_t*>(
-        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                sizeof(Triangle), mesh.triangles.size()));
-    if (vertices && indices) {
-      // Embree leaves out a triangle with a NaN corner.
-      const Vector3f unusable = Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
-      for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        const Vector3f& p = mesh.positions[i];
-        const Vector3f inside = is_usable(p) ? to_inside(p) : unusable;
-        std::copy_n(inside.data(), 3, vertices + 3 * i);
-      }
-      std::memcpy(indices, mesh.triangles.data(), mesh.triangles.size() * sizeof(Triangle));
-      rtcCommitGeometry(geometry);
-      rtcAttachGeometryByID(scene, geometry, id);
-    }
-    rtcReleaseGeometry(geometry);
+    pending.back() = {geometry, positions.size(), triangles.size()};
+    void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                             sizeof(Vector3f), positions.size());
+    void* indices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                            sizeof(Triangle), triangles.size());
     device.check("copying a mesh");
+    std::memcpy(vertices, positions.data(), positions.size_bytes());
+    std::memcpy(indices, triangles.data(), triangles.size_bytes());
+    for (const Triangle& triangle : triangles)
+      if (is_usable(triangle, positions.data()))
+        for (const std::uint32_t v : triangle) bounds.include(positions[v]);
+  }
+
+  // Moves the vertices of a mesh inside, where they are, and adds those of triangles that can be
+  // hit to `points`.
+  void build(unsigned id, std::vector<Vector3f>& points) {
+    const auto [geometry, vertex_count, triangle_count] = std::exchange(pending[id], {});
+    if (!geometry) return;
+    auto* vertices =
+        static_cast<Vector3f*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_VERTEX, 0));
+    const auto* indices =
+        static_cast<const Triangle*>(rtcGetGeometryBufferData(geometry, RTC_BUFFER_TYPE_INDEX, 0));
+    std::vector<bool> used(vertex_count);
+    for (std::size_t i = 0; i < triangle_count; ++i)
+      if (is_usable(indices[i], vertices))
+        for (const std::uint32_t v : indices[i]) used[v] = true;
+    // Embree leaves out a triangle with a NaN corner.
+    const Vector3f unusable = Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      vertices[i] = is_usable(vertices[i]) ? to_inside(vertices[i]) : unusable;
+      if (used[i]) points.push_back(vertices[i]);
+    }
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, id);
+    rtcReleaseGeometry(geometry);
+    device.check("adding a mesh");
   }
 };
 
@@ -201,17 +221,17 @@ void RayScene::add_mesh(std::span<const Vector3f> positions, std::span<const Tri
         throw Error(ErrorKind::input, kSubject,
                     fmt::format("triangle {} of mesh {} uses vertex {}, expected below {}", i,
                                 impl_->pending.size(), v, positions.size()));
-  impl_->pending.push_back(
-      {{positions.begin(), positions.end()}, {triangles.begin(), triangles.end()}});
+  impl_->add(positions, triangles);
 }
 
 void RayScene::commit() {
   if (impl_->committed) throw Error(ErrorKind::input, kSubject, "committed twice");
   impl_->choose_scale();
+  std::vector<Vector3f> corners;
   for (std::size_t i = 0; i < impl_->pending.size(); ++i)
-    if (!impl_->pending[i].triangles.empty())
-      impl_->build(impl_->pending[i], static_cast<unsigned>(i));
+    impl_->build(static_cast<unsigned>(i), corners);
   rtcCommitScene(impl_->scene);
+  impl_->corners = PointTree(std::move(corners));
   impl_->device.check("building the scene");
   impl_->pending = {};
   impl_->committed = true;
@@ -292,6 +312,15 @@ std::uint32_t RayScene::occluded16(const Vector3f& origin, const float* x, const
   std::uint32_t occluded = 0;
   for (int i = 0; i < kWidth; ++i) occluded |= static_cast<std::uint32_t>(rays.tfar[i] < 0) << i;
   return occluded & active;
+}
+
+bool RayScene::hemisphere_is_empty(const Vector3f& origin, const Vector3f& normal) const {
+  const Vector3f inside = impl_->to_inside(origin);
+  if (!impl_->committed || !inside.allFinite()) return true;
+  // The scene is at most 1 wide. The margin covers the rounding of directions, of their cosines and
+  // of the planes' heights, all a few parts in 10^7, and is a tenth of origin_offset().
+  const float margin = 1e-6f * (1 + inside.norm());
+  return !impl_->corners.any_above(normal, normal.dot(inside) - margin);
 }
 
 }  // namespace burnish

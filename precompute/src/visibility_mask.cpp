@@ -23,9 +23,6 @@ DirectionTable::DirectionTable(int resolution)
   }
 }
 
-namespace {
-
-// Bit i: direction i lies strictly above the horizon.
 std::uint32_t above_horizon(const DirectionTile& tile, const Vector3f& normal) {
   float cosine[16];
   for (int i = 0; i < 16; ++i)
@@ -35,12 +32,16 @@ std::uint32_t above_horizon(const DirectionTile& tile, const Vector3f& normal) {
   return above;
 }
 
-}  // namespace
-
 std::uint64_t sample_visibility(const RayScene& scene, const DirectionTable& table,
                                 const Vector3f& position, const Vector3f& normal,
                                 VisibilityMask& mask) {
   const Vector3f origin = position + scene.origin_offset() * normal;
+  return sample_visibility_from(scene, table, origin, normal, mask);
+}
+
+std::uint64_t sample_visibility_from(const RayScene& scene, const DirectionTable& table,
+                                     const Vector3f& origin, const Vector3f& normal,
+                                     VisibilityMask& mask) {
   const std::size_t words = static_cast<std::size_t>(table.resolution()) / 64;
   const std::size_t tiles = 16 * words;  // in a row of tiles
   std::uint64_t rays = 0;

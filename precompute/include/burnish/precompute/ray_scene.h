@@ -60,6 +60,10 @@ class RayScene {
   std::uint32_t occluded16(const Vector3f& origin, const float* x, const float* y, const float* z,
                            std::uint32_t active) const;
 
+  /// Whether it is certain that no ray from `origin` into a direction above the horizon of the unit
+  /// `normal` hits anything: no triangle reaches above the plane through the origin.
+  bool hemisphere_is_empty(const Vector3f& origin, const Vector3f& normal) const;
+
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -59,11 +59,19 @@ struct VisibilityMask {
   }
 };
 
+/// Bit i: direction i of the tile lies strictly above the horizon of `normal`, in float.
+std::uint32_t above_horizon(const DirectionTile& tile, const Vector3f& normal);
+
 /// Finds what a vertex sees. Rays leave from position + origin_offset * normal, into the directions
 /// strictly above the horizon of the unit `normal`; what lies below counts as occluded. Fills
 /// `mask`, which has the table's resolution (a multiple of 64). Returns the number of rays cast.
 std::uint64_t sample_visibility(const RayScene& scene, const DirectionTable& table,
                                 const Vector3f& position, const Vector3f& normal,
                                 VisibilityMask& mask);
+
+/// The same for rays that leave from `origin` itself.
+std::uint64_t sample_visibility_from(const RayScene& scene, const DirectionTable& table,
+                                     const Vector3f& origin, const Vector3f& normal,
+                                     VisibilityMask& mask);
 
 }  // namespace burnish
