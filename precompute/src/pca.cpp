@@ -6,56 +6,30 @@
 #include <random>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <tbb/parallel_for.h>
 
-// Based on: halko2011randomized, Algorithm 4.4 (subspace iteration) on the rows' space, then a
-// Rayleigh-Ritz step (Algorithm 5.1 with the small problem solved as a symmetric eigenproblem in
-// double). Products are cut into blocks of fixed size, each computed by one thread, so that the
-// number of threads cannot change a bit.
+#include "dense_products.h"
+#include "pca_subspace.h"
+
+// Based on: halko2011randomized, Algorithm 4.4 (subspace iteration), then a Rayleigh-Ritz step
+// (Algorithm 5.1 with the small problem solved as a symmetric eigenproblem in double). Bases are
+// made orthonormal through their Gram matrix (stathopoulos2002svqb), which leaves the work to
+// matrix products.
 
 namespace burnish {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using Eigen::MatrixXf;
 
-constexpr Index kRowBlock = 128, kColumnBlock = 512;
+constexpr Index kColumnBlock = 512;
+constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
 
 template <class Body>
-void for_blocks(Index size, Index block, const Body& body) {
-  tbb::parallel_for(Index{0}, (size + block - 1) / block,
-                    [&](Index i) { body(i * block, std::min(block, size - i * block)); });
-}
-
-Eigen::RowVectorXf subtract_mean(RowMatrixf& data) {
-  Eigen::RowVectorXf mean(data.cols());
-  for_blocks(data.cols(), kColumnBlock, [&](Index first, Index count) {
-    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(count);
-    for (Index row = 0; row < data.rows(); ++row)
-      sum += data.row(row).segment(first, count).cast<double>();
-    mean.segment(first, count) = (sum / static_cast<double>(data.rows())).cast<float>();
-    data.middleCols(first, count).rowwise() -= mean.segment(first, count);
+void for_column_blocks(Index columns, const Body& body) {
+  tbb::parallel_for(Index{0}, (columns + kColumnBlock - 1) / kColumnBlock, [&](Index i) {
+    body(i * kColumnBlock, std::min(kColumnBlock, columns - i * kColumnBlock));
   });
-  return mean;
-}
-
-RowMatrixf multiply(const RowMatrixf& data, const RowMatrixf& directions) {
-  RowMatrixf product(data.rows(), directions.cols());
-  for_blocks(data.rows(), kRowBlock, [&](Index first, Index count) {
-    product.middleRows(first, count).noalias() = data.middleRows(first, count) * directions;
-  });
-  return product;
-}
-
-RowMatrixf multiply_transposed(const RowMatrixf& data, const RowMatrixf& weights) {
-  RowMatrixf product(data.cols(), weights.cols());
-  for_blocks(data.cols(), kColumnBlock, [&](Index first, Index count) {
-    product.middleRows(first, count).noalias() =
-        data.middleCols(first, count).transpose() * weights;
-  });
-  return product;
 }
 
 // Columns of +1 and -1: as good a start as Gaussian ones, and the same with every standard library.
@@ -66,13 +40,76 @@ RowMatrixf random_start(Index rows, Index columns, std::uint64_t seed) {
   return start;
 }
 
-MatrixXd orthonormal_columns(const RowMatrixf& m) {
-  const Eigen::HouseholderQR<MatrixXd> qr(m.cast<double>());
-  return qr.householderQ() * MatrixXd::Identity(m.rows(), m.cols());
+// Orthonormal columns that span those of `matrix`; fewer where these depend on each other. Twice:
+// rounding in the first pass grows with the ratio of the largest to the smallest column.
+RowMatrixf orthonormal_columns(RowMatrixf matrix) {
+  for (int pass = 0; pass < 2 && matrix.cols() > 0; ++pass) {
+    const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(gram_matrix(matrix));
+    const Eigen::VectorXd values = eigen.eigenvalues().reverse();
+    const double least = std::pow(4 * kFloatEpsilon, 2) * values[0];
+    Index count = 0;
+    while (count < values.size() && values[count] > least) ++count;
+    const MatrixXd columns = eigen.eigenvectors().rowwise().reverse().leftCols(count) *
+                             values.head(count).cwiseSqrt().cwiseInverse().asDiagonal();
+    matrix = multiply(matrix, {}, PackedFactor(columns.cast<float>()));
+  }
+  return matrix;
 }
 
-// The component of largest magnitude (the first of equals) becomes positive.
-void fix_signs(MatrixXd& columns) {
+// The best directions within the span of orthonormal columns: eigenvectors of the data's covariance
+// in that span.
+PrincipalSubspace rayleigh_ritz(const RowMatrixf& data, std::span<const float> centre,
+                                const RowMatrixf& span, Index terms) {
+  const RowMatrixf inside = multiply(data, centre, PackedFactor(span));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(gram_matrix(inside));
+  const Eigen::VectorXd values = eigen.eigenvalues().reverse().cwiseMax(0.0);
+  MatrixXd columns =
+      eigen.eigenvectors().rowwise().reverse().leftCols(std::min(terms, values.size()));
+  PrincipalSubspace result;
+  for (Index k = 0; k < columns.cols(); ++k)
+    result.deviations.push_back(std::sqrt(values[k] / static_cast<double>(data.rows())));
+  const PackedFactor rotation(columns.cast<float>());
+  result.directions = multiply(span, {}, rotation);
+  result.coordinates = multiply(inside, {}, rotation);
+  return result;
+}
+
+}  // namespace
+
+Eigen::RowVectorXf mean_row(const RowMatrixf& data) {
+  Eigen::RowVectorXf mean(data.cols());
+  for_column_blocks(data.cols(), [&](Index first, Index count) {
+    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(count);
+    for (Index row = 0; row < data.rows(); ++row)
+      sum += data.row(row).segment(first, count).cast<double>();
+    mean.segment(first, count) = (sum / static_cast<double>(data.rows())).cast<float>();
+  });
+  return mean;
+}
+
+PrincipalSubspace find_principal_subspace(const RowMatrixf& data, std::span<const float> centre,
+                                          const PcaOptions& options, const PcaProgress& progress) {
+  const int passes = options.iterations + 2;
+  const auto report = [&](int done) {
+    if (progress) progress(done, passes);
+  };
+  report(0);
+  const Index smaller = std::min(data.rows(), data.cols());
+  const Index terms = std::min<Index>(options.terms, smaller);
+  const Index directions = std::min(terms + options.oversampling, smaller);
+  RowMatrixf span = random_start(data.cols(), directions, options.seed);
+  for (int i = 0; i <= options.iterations; ++i) {
+    const RowMatrixf image = orthonormal_columns(multiply(data, centre, PackedFactor(span)));
+    span = orthonormal_columns(multiply_transposed(data, centre, PackedFactor(image)));
+    report(i + 1);
+  }
+  PrincipalSubspace result;
+  if (span.cols() > 0) result = rayleigh_ritz(data, centre, span, terms);
+  report(passes);
+  return result;
+}
+
+void fix_signs(RowMatrixf& columns) {
   for (Index k = 0; k < columns.cols(); ++k) {
     Index largest = 0;
     columns.col(k).cwiseAbs().maxCoeff(&largest);
@@ -80,52 +117,29 @@ void fix_signs(MatrixXd& columns) {
   }
 }
 
-// The best directions within the span of the orthonormal columns of `span`: eigenvectors of the
-// data's covariance in that span, the largest first.
-void rayleigh_ritz(const RowMatrixf& data, const MatrixXd& span, Index terms, PcaBasis& basis) {
-  const MatrixXd inside = multiply(data, span.cast<float>()).cast<double>();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(inside.transpose() * inside);
-  const Eigen::VectorXd values = eigen.eigenvalues().reverse().cwiseMax(0.0);
+PcaBasis train_pca(RowMatrixf& data, const PcaOptions& options, const PcaProgress& progress) {
+  PcaBasis basis;
+  basis.mean = mean_row(data);
+  for_column_blocks(data.cols(), [&](Index first, Index count) {
+    data.middleCols(first, count).rowwise() -= basis.mean.segment(first, count);
+  });
+  PrincipalSubspace subspace = find_principal_subspace(data, {}, options, progress);
+
   // What rounding the data to float leaves along a direction that the data do not have.
-  const double noise = 4 * double(std::numeric_limits<float>::epsilon()) *
-                       std::sqrt(values.sum() + static_cast<double>(data.rows()) *
-                                                    basis.mean.cast<double>().squaredNorm());
-  Index count = 0;
-  while (count < std::min(terms, values.size()) && std::sqrt(values[count]) > noise) ++count;
+  double squared = basis.mean.cast<double>().squaredNorm();
+  for (const double deviation : subspace.deviations) squared += deviation * deviation;
+  const double noise = 4 * kFloatEpsilon * std::sqrt(squared);
+  const auto count = std::find_if(subspace.deviations.begin(), subspace.deviations.end(),
+                                  [&](double deviation) { return deviation <= noise; }) -
+                     subspace.deviations.begin();
   if (count == 0) {
     basis.components = RowMatrixf::Zero(data.cols(), 1);
     basis.deviations = {0.0};
-    return;
+    return basis;
   }
-  MatrixXd columns = span * eigen.eigenvectors().rowwise().reverse().leftCols(count);
-  fix_signs(columns);
-  basis.components = columns.cast<float>();
-  for (Index k = 0; k < count; ++k)
-    basis.deviations.push_back(std::sqrt(values[k] / static_cast<double>(data.rows())));
-}
-
-}  // namespace
-
-PcaBasis train_pca(RowMatrixf& data, const PcaOptions& options, const PcaProgress& progress) {
-  const int passes = options.iterations + 2;
-  const auto report = [&](int done) {
-    if (progress) progress(done, passes);
-  };
-  report(0);
-  PcaBasis basis;
-  basis.mean = subtract_mean(data);
-  const Index smaller = std::min(data.rows(), data.cols());
-  const Index terms = std::min<Index>(options.terms, smaller);
-  const Index directions = std::min(terms + options.oversampling, smaller);
-
-  RowMatrixf span = random_start(data.cols(), directions, options.seed);
-  for (int i = 0; i <= options.iterations; ++i) {
-    const RowMatrixf image = multiply_transposed(data, multiply(data, span));
-    span = orthonormal_columns(image).cast<float>();
-    report(i + 1);
-  }
-  rayleigh_ritz(data, orthonormal_columns(span), terms, basis);
-  report(passes);
+  basis.components = subspace.directions.leftCols(count);
+  fix_signs(basis.components);
+  basis.deviations.assign(subspace.deviations.begin(), subspace.deviations.begin() + count);
   return basis;
 }
 

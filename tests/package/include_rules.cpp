@@ -14,7 +14,7 @@ const std::vector<Layer>& layers() {
        {"Eigen/"},
        {"OpenMesh/", "OpenEXR/", "Imath/", "png.h", "stb/", "hdf5.h", "H5Cpp.h", "nlohmann/",
         "fmt/", "fcntl.h", "unistd.h", "sys/"}},
-      {"precompute", {"Eigen/"}, {"embree3/", "embree4/", "tbb/", "ceres/", "fmt/"}},
+      {"precompute", {"Eigen/"}, {"embree3/", "embree4/", "tbb/", "ceres/", "fmt/", "hwy/"}},
       {"tools",
        {},
        {"CLI/", "Eigen/", "benchmark/", "nlohmann/", "fmt/", "tbb/", "signal.h", "unistd.h",
