@@ -192,37 +192,73 @@ class EdgeDifferences {
   std::vector<Known> known_;  // by rising key
 };
 
+// The longest segment of each triangle.
+std::vector<std::uint32_t> longest_segments(const TriangleMesh& mesh, const MeshEdges& edges) {
+  std::vector<std::uint32_t> longest(edges.of_triangle.size());
+  for (std::size_t t = 0; t < longest.size(); ++t) {
+    double length = -1;
+    for (const std::uint32_t side : edges.of_triangle[t]) {
+      const std::uint32_t segment = edges.edges[side].segment;
+      const double own = edge_length(mesh, edges.edges[side]);
+      if (!std::isfinite(own)) continue;
+      if (!(own > length) && !(own == length && segment < longest[t])) continue;
+      length = own;
+      longest[t] = segment;
+    }
+  }
+  return longest;
+}
+
+// Marks the longest segment of every triangle that has a marked one, until there is none left
+// (rivara1984): angles stay above half of what they were, and the refinement ends. Without it, a
+// triangle whose longest edge needs no halving could be cut into slivers for ever.
+void mark_longest(const MeshEdges& edges, const std::vector<std::uint32_t>& longest,
+                  std::vector<char>& marked) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t t = 0; t < longest.size(); ++t) {
+      if (marked[longest[t]]) continue;
+      for (const std::uint32_t side : edges.of_triangle[t])
+        if (marked[edges.edges[side].segment]) marked[longest[t]] = changed = true;
+    }
+  }
+}
+
 // The segments to halve. With too few vertices left, those where the difference times the length is
 // largest come first, and `out_of_vertices` is set.
 std::vector<char> choose_segments(const TriangleMesh& mesh, const MeshEdges& edges,
                                   const EdgeDifferences& differences, std::uint64_t vertices_left,
                                   bool& out_of_vertices) {
-  struct Segment {
-    double urgency = 0;
-    std::uint32_t segment = 0, cost = 0;
-  };
-  std::vector<Segment> segments(edges.segments);
-  for (std::uint32_t s = 0; s < edges.segments; ++s) segments[s].segment = s;
-  std::uint64_t needed = 0;
+  std::vector<double> urgency(edges.segments, 0);
   for (std::size_t i = 0; i < edges.edges.size(); ++i) {
-    Segment& segment = segments[edges.edges[i].segment];
-    ++segment.cost;
     if (!differences.differs(i) || !differences.is_divisible(mesh, edges.edges[i])) continue;
-    const double urgency = double(differences.of(i)) * edge_length(mesh, edges.edges[i]);
-    segment.urgency = std::max(segment.urgency, urgency);
+    double& most = urgency[edges.edges[i].segment];
+    most = std::max(most, double(differences.of(i)) * edge_length(mesh, edges.edges[i]));
   }
-  std::erase_if(segments, [](const Segment& segment) { return segment.urgency == 0; });
-  for (const Segment& segment : segments) needed += segment.cost;
-  out_of_vertices = needed > vertices_left;
-  if (out_of_vertices)
-    std::stable_sort(segments.begin(), segments.end(),
-                     [](const Segment& a, const Segment& b) { return a.urgency > b.urgency; });
-  std::vector<char> marked(edges.segments, 0);
-  for (const Segment& segment : segments) {
-    if (segment.cost > vertices_left) break;
-    vertices_left -= segment.cost;
-    marked[segment.segment] = 1;
+  std::vector<std::uint32_t> segments;
+  for (std::uint32_t s = 0; s < edges.segments; ++s)
+    if (urgency[s] > 0) segments.push_back(s);
+  std::stable_sort(segments.begin(), segments.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return urgency[a] > urgency[b]; });
+
+  const std::vector<std::uint32_t> longest = longest_segments(mesh, edges);
+  std::vector<char> marked;
+  const auto fits = [&](std::size_t count) {
+    marked.assign(edges.segments, 0);
+    for (std::size_t i = 0; i < count; ++i) marked[segments[i]] = 1;
+    mark_longest(edges, longest, marked);
+    std::uint64_t vertices = 0;
+    for (const MeshEdges::Edge& edge : edges.edges) vertices += marked[edge.segment] != 0;
+    return vertices <= vertices_left;
+  };
+  if (fits(segments.size())) return marked;
+  out_of_vertices = true;
+  std::size_t most = 0, too_many = segments.size();
+  while (too_many - most > 1) {
+    const std::size_t count = (most + too_many) / 2;
+    (fits(count) ? most : too_many) = count;
   }
+  fits(most);
   return marked;
 }
 
@@ -294,9 +330,12 @@ RefinementReport refine_by_visibility(TriangleMesh& mesh, const RayScene& scene,
     std::vector<std::unique_ptr<CoarseView>> middles;
     report.rays += differences.look(subdivider.mesh(), edges, views, progress, middles);
     const std::uint64_t vertices = subdivider.mesh().positions.size();
-    const std::vector<char> marked = choose_segments(
-        subdivider.mesh(), edges, differences,
-        options.max_vertices - std::min(options.max_vertices, vertices), report.out_of_vertices);
+    // Once they do not suffice, what is left over is left.
+    const std::uint64_t vertices_left =
+        report.out_of_vertices ? 0
+                               : options.max_vertices - std::min(options.max_vertices, vertices);
+    const std::vector<char> marked = choose_segments(subdivider.mesh(), edges, differences,
+                                                     vertices_left, report.out_of_vertices);
     report.left = 0;
     std::vector<std::size_t> halved;
     for (std::size_t i = 0; i < edges.edges.size(); ++i) {

@@ -57,8 +57,10 @@ struct RefinementReport : SubdivisionReport {
 
 /// Halves the edges across which visibility changes, again and again: shadow boundaries need
 /// vertices. An edge of at least 2 min_edge is also looked at in its middle, so that a small
-/// occluder between two open ends is found. The surface does not change (subdivide_long_edges says
-/// how vertices come about). `scene` holds the mesh and its occluders.
+/// occluder between two open ends is found. Where an edge of a triangle is halved, so is its
+/// longest (rivara1984), which keeps angles above half of what they were. The surface does not
+/// change (subdivide_long_edges says how vertices come about). `scene` holds the mesh and its
+/// occluders.
 ///
 /// Same result at any number of threads. `progress`: stage "refine", in vertices and middles of the
 /// round; Cancelled leaves the mesh as it was. Throws Error for options out of range.
