@@ -49,7 +49,10 @@ TEST(SsdfLookup, CompressedEqualsTheSumOfItsParts) {
   const int n = 16, terms = 5;
   std::mt19937 random(kSeed);
   std::normal_distribution<float> normal;
-  SsdfBasis basis{n, terms, std::vector<float>(n * n), std::vector<float>(n * n * terms)};
+  SsdfBasis basis{.resolution = n,
+                  .terms = terms,
+                  .mean = std::vector<float>(n * n),
+                  .eigen = std::vector<float>(n * n * terms)};
   for (float& v : basis.mean) v = normal(random);
   for (float& v : basis.eigen) v = normal(random);
   std::vector<float> coefficients(terms);
@@ -68,6 +71,67 @@ TEST(SsdfLookup, CompressedEqualsTheSumOfItsParts) {
   }
 }
 
+// A basis without variation, whose mean is the encoded map.
+SsdfBasis encoded_basis(const std::vector<float>& map, int resolution, float amplitude_rad) {
+  SsdfBasis basis{.resolution = resolution,
+                  .terms = 1,
+                  .amplitude_rad = amplitude_rad,
+                  .mean = map,
+                  .eigen = std::vector<float>(map.size())};
+  encode_ssdf(basis.mean, amplitude_rad);
+  return basis;
+}
+
+TEST(SsdfLookup, EncodedDistancesComeBack) {
+  std::vector<float> distances;
+  for (int i = -1000; i <= 1000; ++i)
+    distances.push_back(kPi<float> * static_cast<float>(i) / 1000);
+  distances.push_back(-0.0f);
+  for (const float amplitude : {0.1f, 0.5f, 0.7f, 2.0f}) {
+    std::vector<float> encoded = distances;
+    encode_ssdf(encoded, amplitude);
+    for (size_t i = 0; i < distances.size(); ++i) {
+      const double scaled = double(distances[i]) / double(amplitude);
+      ASSERT_NEAR(encoded[i], std::tanh(scaled), 2e-7);
+      const float back = decode_ssdf(encoded[i], amplitude);
+      ASSERT_LE(std::abs(back), kPi<float>);
+      // d distance / d encoded = amplitude cosh^2; where it is large the value may be 1 itself,
+      // which stands for pi.
+      const double slope = double(amplitude) * std::pow(std::cosh(scaled), 2);
+      ASSERT_EQ(std::signbit(back), std::signbit(distances[i]));
+      if (slope > 1e5) continue;
+      ASSERT_NEAR(back, distances[i], 2.5e-7 * slope + 2e-7) << amplitude;
+    }
+  }
+  EXPECT_EQ(decode_ssdf(1.5f, 0.5f), kPi<float>);  // a reconstruction may overshoot
+  EXPECT_EQ(decode_ssdf(-1.0f, 0.5f), -kPi<float>);
+  std::vector<float> plain = distances;
+  encode_ssdf(plain, 0);
+  EXPECT_EQ(plain, distances);
+  EXPECT_EQ(decode_ssdf(2.5f, 0), 2.5f);
+}
+
+TEST(SsdfLookup, EncodedMapGivesTheDistanceAndItsGradient) {
+  const int n = 128;
+  const float amplitude = 0.6f;
+  const Vector3f normal = Vector3f(-0.2f, 0.7f, 0.4f).normalized();
+  const std::vector<float> map = half_space_ssdf(normal, n);
+  const SsdfBasis basis = encoded_basis(map, n, amplitude);
+  const float coefficient = 3;  // of an eigen-SSDF of zeros
+  std::mt19937 random(kSeed);
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3f d = test::random_direction(random).cast<float>();
+    const SsdfSample plain = lookup_ssdf(map.data(), n, d);
+    const SsdfSample sample = lookup_ssdf(basis, &coefficient, 1, d);
+    // tanh is no straight line over a texel, h = 4 pi^(1/2) / 128 = .055 with its corners: that
+    // moves the distance by at most h^2 / 8 times max |tanh''| / tanh' = 2 / amplitude.
+    ASSERT_NEAR(sample.distance, plain.distance, 0.055 * 0.055 / 8 * 2 / 0.6) << "seed " << kSeed;
+    if (std::abs(normal.dot(d)) > 0.9f) continue;  // the distance has a kink at its poles
+    // Slopes across the cell differ by h * 2 / amplitude, which turns the gradient by less.
+    ASSERT_GT(sample.gradient.dot(plain.gradient), std::cos(0.055 * 2 / 0.6)) << "seed " << kSeed;
+  }
+}
+
 TEST(SsdfLookup, FlatMapHasNoGradient) {
   const int n = 16;
   const std::vector<float> open(n * n, kPi<float>);
@@ -78,6 +142,12 @@ TEST(SsdfLookup, FlatMapHasNoGradient) {
     EXPECT_NEAR(sample.distance, kPi<float>, 1e-5);
     EXPECT_EQ(sample.gradient.norm(), 0);
   }
+  const SsdfBasis basis = encoded_basis(open, n, 0.6f);
+  const float coefficient = 1;
+  const SsdfSample sample = lookup_ssdf(basis, &coefficient, 1, Vector3f(0.6f, 0, 0.8f));
+  // 1 - tanh(pi / .6)^2 is 1.1e-4: a distance of pi comes back to 1e-3.
+  EXPECT_NEAR(sample.distance, kPi<float>, 1e-3);
+  EXPECT_EQ(sample.gradient.norm(), 0);
   for (const Vector3f& pole : {Vector3f(0, 0, 1), Vector3f(0, 0, -1), Vector3f(1, 0, 0)})
     EXPECT_TRUE(lookup_ssdf(open.data(), n, pole).gradient.allFinite());
 }
