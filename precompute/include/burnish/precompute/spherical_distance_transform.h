@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -11,60 +12,61 @@ namespace burnish {
 /// texel centre of a smaller octahedral map the angle to the nearest change of visibility, positive
 /// where visible.
 ///
-/// The boundary is a set of points: the midpoint, on the sphere, of every two texels of the mask
-/// that are neighbours (left-right or above-below, with the map's wrap) and differ. Over these
-/// points the distance is exact (to float rounding). As for the boundary itself, with h the largest
-/// angle between neighbours, boundary_pitch(): the true boundary passes within h/2 of every
-/// boundary point, so a distance is never more than h/2 too small; and where the true boundary is
-/// straight over the size of a texel, it is never more than h too large.
+/// The boundary is a set of points: on the octahedral map, the middle of the edge that two texels
+/// of the mask share (left-right or above-below, with the map's wrap) where they differ. No point
+/// is nearer than the one found, but for float rounding: a distance d is off by at most
+/// 1e-6 / sin d, and never by more than 1e-3. As for the boundary itself,
+/// with h the boundary_pitch(): the true boundary passes within h/2 of every boundary point, so a
+/// distance is never more than h/2 too small; and where the true boundary is straight over the size
+/// of a texel, it is never more than h too large.
 ///
 /// The sign at a texel centre is that of the mask's texel there; where the centre falls on the
 /// common corner of four texels of the mask, that of the majority, and two against two is a
 /// distance of zero: the boundary runs through the corner.
 class SphericalDistanceTransform {
  public:
-  /// `directions`: the mask's texel directions; `resolution`: of the result, 16..the mask's, a
-  /// power of two as the mask's is. The table must outlive the transform.
+  /// `directions`: of the mask; `resolution`: of the result, 16..the mask's, a power of two as the
+  /// mask's is.
   SphericalDistanceTransform(const DirectionTable& directions, int resolution);
 
-  /// Memory to be reused from one call to the next; one a thread.
+  /// Memory to be reused from one call to the next; one a thread. Arrays have room for more than
+  /// what they hold, so that vectors can be loaded and stored beyond the end.
   struct Scratch {
-    struct Points {
-      std::vector<float> x, y, z;  // more than `size` of each
+    /// Boundary points near each other, in a ball around one of them.
+    struct Cells {
+      std::vector<float> x, y, z, radius;
+      std::vector<std::uint32_t> index;
       std::size_t size = 0;
     };
-    std::vector<Points> levels;
-    std::vector<float> distance;
+    std::vector<std::uint32_t> places;      // of the boundary points, on the map
+    std::vector<std::uint32_t> cell_begin;  // first point of each cell, and one past the last
+    std::vector<float> x, y, z;             // of the boundary points
+    std::vector<Cells> levels;
+    std::vector<float> cosines;
+    std::vector<float> local_x, local_y, local_z, local_square;
+    std::vector<float> signs;
   };
 
   /// Writes resolution^2 texels, radians in [-pi, pi]; +-pi when nothing or everything is occluded.
   /// Thread-safe with a scratch for each thread.
   void transform(const VisibilityMask& mask, std::span<float> ssdf, Scratch& scratch) const;
 
-  int resolution() const { return resolution_; }
+  int resolution() const { return texels_.resolution(); }
 
-  /// Largest angle between the centres of neighbouring texels of the mask.
+  /// Twice the largest angle from a boundary point to the centres of the two texels it parts, over
+  /// the whole map: about the largest angle between neighbours.
   float boundary_pitch() const { return boundary_pitch_; }
 
- private:
-  // A square of texels of the result, inside a ball around the mean of their directions.
-  struct Node {
+  /// A square of texels of the result, inside a ball around the mean of their directions.
+  struct Square {
     Vector3f center;
     float radius;
   };
 
-  void collect_boundary(const VisibilityMask& mask, Scratch::Points& points) const;
-  void search(std::size_t level, int x, int y, const VisibilityMask& mask, std::span<float> ssdf,
-              Scratch& scratch) const;
-  void search_leaf(int x, int y, const Scratch::Points& points, const VisibilityMask& mask,
-                   std::span<float> ssdf) const;
-  int sign(int x, int y, const VisibilityMask& mask) const;
-
-  const DirectionTable& directions_;
-  int resolution_;
+ private:
+  DirectionTable texels_;
   float boundary_pitch_ = 0;
-  std::vector<Vector3f> texels_;           // of the result, row-major
-  std::vector<std::vector<Node>> levels_;  // [level][2^level x 2^level], the finest of kLeaf texels
+  std::vector<std::vector<Square>> levels_;  // [level], row-major; the finest of 8 x 8 texels
 };
 
 }  // namespace burnish
