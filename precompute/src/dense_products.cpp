@@ -33,14 +33,19 @@ constexpr Index kBufferSize = std::max(kRows * kRowStride, kTransposedRows* kDep
 
 // What one thread computes: some rows of the result, all its columns.
 struct ProductBlock {
-  const float* left;  // the first element of the block's rows (or columns, when transposed)
+  const float* left;  // the first row's first element; transposed, of the block's columns
   Index left_stride;
-  const float* centre;  // likewise; null: nothing to subtract
+  const std::uint32_t* chosen;  // numbers of the rows; null: 0, 1, ...
+  const float* centre;          // null: nothing to subtract
   Index rows;
   const PackedFactor& right;
   float* product;
   Index product_stride;
   double* squared_norms;  // null: not wanted
+
+  const float* left_row(Index row) const {
+    return left + (chosen ? static_cast<Index>(chosen[row]) : row) * left_stride;
+  }
 };
 
 }  // namespace
@@ -155,9 +160,9 @@ void multiply_block(const ProductBlock& block, float* buffer) {
   for (Index first = 0; first < all; first += kDepth) {
     const Index depth = std::min(kDepth, all - first);
     for (Index r = 0; r < block.rows; ++r) {
-      const float squares = copy_centred(block.left + r * block.left_stride + first,
-                                         block.centre ? block.centre + first : nullptr, depth,
-                                         buffer + r * kRowStride);
+      const float squares =
+          copy_centred(block.left_row(r) + first, block.centre ? block.centre + first : nullptr,
+                       depth, buffer + r * kRowStride);
       if (block.squared_norms) block.squared_norms[r] += static_cast<double>(squares);
     }
     add_depths<kRowStride, 1>(block, buffer, first, depth);
@@ -172,7 +177,7 @@ void multiply_transposed_block(const ProductBlock& block, float* buffer) {
     const Index depth = std::min(kDepth, all - first);
     for (Index k = 0; k < depth; ++k) {
       float* row = buffer + k * kTransposedRows;
-      copy_centred(block.left + (first + k) * block.left_stride, block.centre, block.rows, row);
+      copy_centred(block.left_row(first + k), block.centre, block.rows, row);
       std::fill(row + block.rows, row + filled_rows, 0.0f);
     }
     add_depths<1, kTransposedRows>(block, buffer, first, depth);
@@ -233,29 +238,34 @@ void multiply_here(const Eigen::Ref<const RowMatrixf>& left, std::span<const flo
   for (Index first = 0; first < left.rows(); first += kRows) {
     const Index rows = std::min(kRows, left.rows() - first);
     HWY_DYNAMIC_DISPATCH(multiply_block)
-    ({left.row(first).data(), left.outerStride(), data_or_null(centre), rows, right,
+    ({left.row(first).data(), left.outerStride(), nullptr, data_or_null(centre), rows, right,
       product.row(first).data(), product.outerStride(),
       squared_norms.empty() ? nullptr : squared_norms.data() + first},
      block_buffer());
   }
 }
 
-RowMatrixf multiply(const RowMatrixf& left, std::span<const float> centre,
-                    const PackedFactor& right) {
+RowMatrixf multiply(const CentredRows& left, const PackedFactor& right) {
   RowMatrixf product(left.rows(), right.columns());
+  const bool all = left.chosen.empty();
   for_blocks(left.rows(), kRows, [&](Index first, Index rows) {
-    multiply_here(left.middleRows(first, rows), centre, right, product.middleRows(first, rows));
+    HWY_DYNAMIC_DISPATCH(multiply_block)
+    ({all ? left.data.row(first).data() : left.data.data(), left.data.outerStride(),
+      all ? nullptr : left.chosen.data() + first, data_or_null(left.centre), rows, right,
+      product.row(first).data(), product.outerStride(), nullptr},
+     block_buffer());
   });
   return product;
 }
 
-RowMatrixf multiply_transposed(const RowMatrixf& left, std::span<const float> centre,
-                               const PackedFactor& right) {
-  RowMatrixf product(left.cols(), right.columns());
-  for_blocks(left.cols(), kTransposedRows, [&](Index first, Index rows) {
+RowMatrixf multiply_transposed(const CentredRows& left, const PackedFactor& right) {
+  RowMatrixf product(left.columns(), right.columns());
+  for_blocks(left.columns(), kTransposedRows, [&](Index first, Index rows) {
     HWY_DYNAMIC_DISPATCH(multiply_transposed_block)
-    ({left.data() + first, left.outerStride(), centre.empty() ? nullptr : centre.data() + first,
-      rows, right, product.row(first).data(), product.outerStride(), nullptr},
+    ({left.data.data() + first, left.data.outerStride(),
+      left.chosen.empty() ? nullptr : left.chosen.data(),
+      left.centre.empty() ? nullptr : left.centre.data() + first, rows, right,
+      product.row(first).data(), product.outerStride(), nullptr},
      block_buffer());
   });
   return product;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include <hwy/aligned_allocator.h>
@@ -26,22 +27,33 @@ class PackedFactor {
   hwy::AlignedFreeUniquePtr<float[]> data_;
 };
 
+/// A left-hand factor: rows of a matrix, less a centre.
+struct CentredRows {
+  const RowMatrixf& data;
+  std::span<const float> centre = {};          ///< [columns], or empty: zero
+  std::span<const std::uint32_t> chosen = {};  ///< numbers of rows, or empty: all
+
+  Eigen::Index rows() const {
+    return chosen.empty() ? data.rows() : static_cast<Eigen::Index>(chosen.size());
+  }
+  Eigen::Index columns() const { return data.cols(); }
+  Eigen::Index row(Eigen::Index i) const {
+    return chosen.empty() ? i : static_cast<Eigen::Index>(chosen[static_cast<std::size_t>(i)]);
+  }
+};
+
 // Single-precision products with the widest vectors that the processor has. A block of the result
 // has a fixed size and is summed by one thread in a fixed order, so that the number of threads
 // changes no bit of it; another instruction set may change the last bits.
-//
-// `centre`, empty or [columns of the left factor], is subtracted from each of its rows on the way.
 
-/// (left - centre) * right, [rows][right.columns()].
-RowMatrixf multiply(const RowMatrixf& left, std::span<const float> centre,
-                    const PackedFactor& right);
+/// left * right, [left.rows()][right.columns()].
+RowMatrixf multiply(const CentredRows& left, const PackedFactor& right);
 
-/// (left - centre)^T * right, [columns of left][right.columns()].
-RowMatrixf multiply_transposed(const RowMatrixf& left, std::span<const float> centre,
-                               const PackedFactor& right);
+/// left^T * right, [left.columns()][right.columns()].
+RowMatrixf multiply_transposed(const CentredRows& left, const PackedFactor& right);
 
-/// multiply() on the calling thread alone. `squared_norms`, empty or one a row, receives those of
-/// the centred rows.
+/// (left - centre) * right on the calling thread alone. `squared_norms`, empty or one a row,
+/// receives those of the centred rows.
 void multiply_here(const Eigen::Ref<const RowMatrixf>& left, std::span<const float> centre,
                    const PackedFactor& right, Eigen::Ref<RowMatrixf> product,
                    std::span<double> squared_norms = {});

@@ -51,64 +51,12 @@ RowMatrixf orthonormal_columns(RowMatrixf matrix) {
     while (count < values.size() && values[count] > least) ++count;
     const MatrixXd columns = eigen.eigenvectors().rowwise().reverse().leftCols(count) *
                              values.head(count).cwiseSqrt().cwiseInverse().asDiagonal();
-    matrix = multiply(matrix, {}, PackedFactor(columns.cast<float>()));
+    matrix = multiply({matrix}, PackedFactor(columns.cast<float>()));
   }
   return matrix;
 }
 
-// The best directions within the span of orthonormal columns: eigenvectors of the data's covariance
-// in that span.
-PrincipalSubspace rayleigh_ritz(const RowMatrixf& data, std::span<const float> centre,
-                                const RowMatrixf& span, Index terms) {
-  const RowMatrixf inside = multiply(data, centre, PackedFactor(span));
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(gram_matrix(inside));
-  const Eigen::VectorXd values = eigen.eigenvalues().reverse().cwiseMax(0.0);
-  MatrixXd columns =
-      eigen.eigenvectors().rowwise().reverse().leftCols(std::min(terms, values.size()));
-  PrincipalSubspace result;
-  for (Index k = 0; k < columns.cols(); ++k)
-    result.deviations.push_back(std::sqrt(values[k] / static_cast<double>(data.rows())));
-  const PackedFactor rotation(columns.cast<float>());
-  result.directions = multiply(span, {}, rotation);
-  result.coordinates = multiply(inside, {}, rotation);
-  return result;
-}
-
-}  // namespace
-
-Eigen::RowVectorXf mean_row(const RowMatrixf& data) {
-  Eigen::RowVectorXf mean(data.cols());
-  for_column_blocks(data.cols(), [&](Index first, Index count) {
-    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(count);
-    for (Index row = 0; row < data.rows(); ++row)
-      sum += data.row(row).segment(first, count).cast<double>();
-    mean.segment(first, count) = (sum / static_cast<double>(data.rows())).cast<float>();
-  });
-  return mean;
-}
-
-PrincipalSubspace find_principal_subspace(const RowMatrixf& data, std::span<const float> centre,
-                                          const PcaOptions& options, const PcaProgress& progress) {
-  const int passes = options.iterations + 2;
-  const auto report = [&](int done) {
-    if (progress) progress(done, passes);
-  };
-  report(0);
-  const Index smaller = std::min(data.rows(), data.cols());
-  const Index terms = std::min<Index>(options.terms, smaller);
-  const Index directions = std::min(terms + options.oversampling, smaller);
-  RowMatrixf span = random_start(data.cols(), directions, options.seed);
-  for (int i = 0; i <= options.iterations; ++i) {
-    const RowMatrixf image = orthonormal_columns(multiply(data, centre, PackedFactor(span)));
-    span = orthonormal_columns(multiply_transposed(data, centre, PackedFactor(image)));
-    report(i + 1);
-  }
-  PrincipalSubspace result;
-  if (span.cols() > 0) result = rayleigh_ritz(data, centre, span, terms);
-  report(passes);
-  return result;
-}
-
+// The element of largest magnitude of each column (the first of equals) becomes positive.
 void fix_signs(RowMatrixf& columns) {
   for (Index k = 0; k < columns.cols(); ++k) {
     Index largest = 0;
@@ -117,13 +65,63 @@ void fix_signs(RowMatrixf& columns) {
   }
 }
 
-PcaBasis train_pca(RowMatrixf& data, const PcaOptions& options, const PcaProgress& progress) {
-  PcaBasis basis;
-  basis.mean = mean_row(data);
-  for_column_blocks(data.cols(), [&](Index first, Index count) {
-    data.middleCols(first, count).rowwise() -= basis.mean.segment(first, count);
+// The best directions within the span of orthonormal columns: eigenvectors of the data's covariance
+// in that span.
+PrincipalSubspace rayleigh_ritz(const CentredRows& rows, const RowMatrixf& span, Index terms) {
+  const RowMatrixf inside = multiply(rows, PackedFactor(span));
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(gram_matrix(inside));
+  const Eigen::VectorXd values = eigen.eigenvalues().reverse().cwiseMax(0.0);
+  MatrixXd columns =
+      eigen.eigenvectors().rowwise().reverse().leftCols(std::min(terms, values.size()));
+  PrincipalSubspace result;
+  for (Index k = 0; k < columns.cols(); ++k)
+    result.deviations.push_back(std::sqrt(values[k] / static_cast<double>(rows.rows())));
+  const PackedFactor rotation(columns.cast<float>());
+  result.directions = multiply({span}, rotation);
+  result.coordinates = multiply({inside}, rotation);
+  return result;
+}
+
+}  // namespace
+
+Eigen::RowVectorXf mean_row(const CentredRows& rows) {
+  Eigen::RowVectorXf mean(rows.columns());
+  for_column_blocks(rows.columns(), [&](Index first, Index count) {
+    Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(count);
+    for (Index i = 0; i < rows.rows(); ++i)
+      sum += rows.data.row(rows.row(i)).segment(first, count).cast<double>();
+    mean.segment(first, count) = (sum / static_cast<double>(rows.rows())).cast<float>();
   });
-  PrincipalSubspace subspace = find_principal_subspace(data, {}, options, progress);
+  return mean;
+}
+
+PrincipalSubspace find_principal_subspace(const CentredRows& rows, const PcaOptions& options,
+                                          const PcaProgress& progress) {
+  const int passes = options.iterations + 2;
+  const auto report = [&](int done) {
+    if (progress) progress(done, passes);
+  };
+  report(0);
+  const Index smaller = std::min(rows.rows(), rows.columns());
+  const Index terms = std::min<Index>(options.terms, smaller);
+  const Index directions = std::min(terms + options.oversampling, smaller);
+  RowMatrixf span = random_start(rows.columns(), directions, options.seed);
+  for (int i = 0; i <= options.iterations; ++i) {
+    const RowMatrixf image = orthonormal_columns(multiply(rows, PackedFactor(span)));
+    span = orthonormal_columns(multiply_transposed(rows, PackedFactor(image)));
+    report(i + 1);
+  }
+  PrincipalSubspace result;
+  if (span.cols() > 0) result = rayleigh_ritz(rows, span, terms);
+  report(passes);
+  return result;
+}
+
+PcaBasis train_pca(const CentredRows& rows, const PcaOptions& options,
+                   const PcaProgress& progress) {
+  PcaBasis basis;
+  basis.mean = Eigen::Map<const Eigen::RowVectorXf>(rows.centre.data(), rows.columns());
+  PrincipalSubspace subspace = find_principal_subspace(rows, options, progress);
 
   // What rounding the data to float leaves along a direction that the data do not have.
   double squared = basis.mean.cast<double>().squaredNorm();
@@ -133,13 +131,23 @@ PcaBasis train_pca(RowMatrixf& data, const PcaOptions& options, const PcaProgres
                                   [&](double deviation) { return deviation <= noise; }) -
                      subspace.deviations.begin();
   if (count == 0) {
-    basis.components = RowMatrixf::Zero(data.cols(), 1);
+    basis.components = RowMatrixf::Zero(rows.columns(), 1);
     basis.deviations = {0.0};
     return basis;
   }
   basis.components = subspace.directions.leftCols(count);
   fix_signs(basis.components);
   basis.deviations.assign(subspace.deviations.begin(), subspace.deviations.begin() + count);
+  return basis;
+}
+
+PcaBasis train_pca(RowMatrixf& data, const PcaOptions& options, const PcaProgress& progress) {
+  const Eigen::RowVectorXf mean = mean_row({data});
+  PcaBasis basis =
+      train_pca({data, {mean.data(), static_cast<std::size_t>(mean.size())}}, options, progress);
+  for_column_blocks(data.cols(), [&](Index first, Index count) {
+    data.middleCols(first, count).rowwise() -= mean.segment(first, count);
+  });
   return basis;
 }
 

@@ -1,13 +1,13 @@
 #pragma once
 
-#include <span>
+#include <vector>
 
-#include "burnish/precompute/pca.h"
+#include "dense_products.h"
 
 namespace burnish {
 
-/// Mean of the rows, summed in double.
-Eigen::RowVectorXf mean_row(const RowMatrixf& data);
+/// Mean of the rows (their centre is not looked at), summed in double.
+Eigen::RowVectorXf mean_row(const CentredRows& rows);
 
 /// Where data vary most.
 struct PrincipalSubspace {
@@ -16,12 +16,13 @@ struct PrincipalSubspace {
   std::vector<double> deviations;  ///< [count] rms of the data along each direction
 };
 
-/// Principal directions of the rows of `data`, less `centre` (their mean; empty when they are
-/// centred already). At most options.terms of them; none when all rows are equal.
-PrincipalSubspace find_principal_subspace(const RowMatrixf& data, std::span<const float> centre,
-                                          const PcaOptions& options, const PcaProgress& progress);
+/// Principal directions of rows whose centre is their mean. At most options.terms of them; none
+/// when all rows are equal.
+PrincipalSubspace find_principal_subspace(const CentredRows& rows, const PcaOptions& options,
+                                          const PcaProgress& progress = {});
 
-/// The element of largest magnitude of each column (the first of equals) becomes positive.
-void fix_signs(RowMatrixf& columns);
+/// As train_pca, from rows whose centre is their mean.
+PcaBasis train_pca(const CentredRows& rows, const PcaOptions& options,
+                   const PcaProgress& progress = {});
 
 }  // namespace burnish
