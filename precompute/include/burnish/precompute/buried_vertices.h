@@ -14,14 +14,15 @@ namespace burnish {
 ///
 /// - covered: another surface, facing the same way, lies above the ray's origin and within 8
 ///   offsets of the vertex (a decal under its wall). A larger offset takes the origin past it.
-/// - pierced: between the vertex and its ray's origin, or at the vertex, lies another surface that
-///   faces it (a box that stands exactly on a floor): rays start on the wrong side. A smaller
-///   offset or a gap helps; of surfaces that coincide exactly, one can hide the other from us.
+/// - pierced: within an offset of the vertex, above or below, lies another surface that faces the
+///   other way (a box that stands in a floor): rays start on its wrong side. A gap helps, or a
+///   smaller offset. Of surfaces that coincide exactly, one can hide the other from us.
 /// - inside: of 64 rays over its hemisphere at least 56 meet the back of a triangle first. No
-///   offset helps. A vertex in a body with a wide opening, or below the edge of a single sheet, is
-///   not found.
+///   offset helps. A vertex in a body with a wide opening, or beside a single sheet that it should
+///   be on the other side of, is not found.
 ///
-/// A triangle's front is the side its normals point to.
+/// A triangle's front is the side its normals point to; one that shares its corners' positions with
+/// a triangle that faces the other way has two.
 enum class Burial { none, covered, pierced, inside };
 
 struct BuriedVertices {
