@@ -50,11 +50,26 @@ void add_row(const BitGrid& grid, int y, Row& row) {
   row.after |= grid.get(0, n - 1 - edge);
 }
 
+// The row moved by one to the left or right, with what lies beyond its end.
+Word next_texels(const Row& row, int k, int size) {
+  const auto i = static_cast<std::size_t>(k);
+  const bool next = i + 1 < row.words.size() ? (row.words[i + 1] & 1) != 0 : row.after;
+  return row.words[i] >> 1 | Word{next} << (std::min(size, 64) - 1);
+}
+
+Word last_texels(const Row& row, int k) {
+  const auto i = static_cast<std::size_t>(k);
+  const bool last = k > 0 ? (row.words[i - 1] >> 63) != 0 : row.before;
+  return row.words[i] << 1 | Word{last};
+}
+
+Word row_mask(int size) { return size < 64 ? (Word{1} << size) - 1 : ~Word{0}; }
+
 }  // namespace
 
 void gather_coarse_samples(const BitGrid& coarse, SampleParity parity, BitGrid& fine) {
   const int odd = static_cast<int>(parity);
-  const Word in_row = coarse.size < 64 ? (Word{1} << coarse.size) - 1 : ~Word{0};
+  const Word in_row = row_mask(coarse.size);
   Row row;
   for (int y = 0; y < fine.size; ++y) {
     row.words.assign(static_cast<std::size_t>(coarse.words), 0);
@@ -65,22 +80,42 @@ void gather_coarse_samples(const BitGrid& coarse, SampleParity parity, BitGrid& 
 
     Word* out = fine.row(y);
     for (int k = 0; k < coarse.words; ++k) {
-      const auto i = static_cast<std::size_t>(k);
-      const Word here = row.words[i];
-      Word even_texels = here, odd_texels = here;
-      if (parity == SampleParity::even) {
-        const bool next = k + 1 < coarse.words ? row.words[i + 1] & 1 : row.after;
-        odd_texels |= here >> 1 | Word{next} << (std::min(coarse.size, 64) - 1);
-      } else {
-        const bool last = k > 0 ? row.words[i - 1] >> 63 : row.before;
-        even_texels |= here << 1 | Word{last};
-      }
+      Word even_texels = row.words[static_cast<std::size_t>(k)], odd_texels = even_texels;
+      if (parity == SampleParity::even)
+        odd_texels |= next_texels(row, k, coarse.size);
+      else
+        even_texels |= last_texels(row, k);
       even_texels &= in_row;
       out[2 * k] = spread(even_texels) | spread(odd_texels) << 1;
       if (coarse.size >= 64)
         out[2 * k + 1] = spread(even_texels >> 32) | spread(odd_texels >> 32) << 1;
     }
   }
+}
+
+void gather_samples_around(const BitGrid& samples, SampleParity parity, BitGrid& around) {
+  const bool odd = parity == SampleParity::odd;
+  Row row;
+  for (int y = 0; y < samples.size; ++y) {
+    row.words.assign(static_cast<std::size_t>(samples.words), 0);
+    row.before = row.after = false;
+    for (int other = odd ? y - 1 : y; other <= y + 1; ++other) add_row(samples, other, row);
+    for (int k = 0; k < samples.words; ++k) {
+      Word any = row.words[static_cast<std::size_t>(k)] | next_texels(row, k, samples.size);
+      if (odd) any |= last_texels(row, k);
+      around.row(y)[k] = any & row_mask(samples.size);
+    }
+  }
+}
+
+void fill_cells(const BitGrid& cells, BitGrid& fine) {
+  for (int y = 0; y < cells.size; ++y)
+    for (int k = 0; k < fine.words; ++k) {
+      Word word = spread(spread(cells.row(y)[k / 4] >> (k % 4 * 16) & 0xffff));
+      word |= word << 1;
+      word |= word << 2;
+      for (int r = 0; r < 4; ++r) fine.row(4 * y + r)[k] = word;
+    }
 }
 
 void place_coarse_samples(const BitGrid& coarse, SampleParity parity, BitGrid& fine) {

@@ -41,6 +41,14 @@ enum class SampleParity { even = 0, odd = 1 };
 /// the map's edge samples do not line up; the three nearest are taken.
 void gather_coarse_samples(const BitGrid& coarse, SampleParity parity, BitGrid& fine);
 
+/// A cell of `around` is set where any sample in it or at its rim is, where a cell's sample is its
+/// first texel (even: the cell's own, the next ones right and below) or its middle one (odd: its
+/// own and the eight about it).
+void gather_samples_around(const BitGrid& samples, SampleParity parity, BitGrid& around);
+
+/// Sets the texels of `fine`, four times the size, that lie in the cells of `cells`, and no others.
+void fill_cells(const BitGrid& cells, BitGrid& fine);
+
 /// Sets the coarse samples' own texels of `fine`, and no others.
 void place_coarse_samples(const BitGrid& coarse, SampleParity parity, BitGrid& fine);
 

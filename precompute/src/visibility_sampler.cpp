@@ -33,24 +33,69 @@ struct Level {
         cast(size),
         todo(size),
         cell(finest / size),
-        // The coarsest samples lie in the middle of their cells, so that none is near the map's
-        // edge; the finer ones are where the coarser ones have been.
+        // The coarsest samples lie in the middle of their cells, so that none is far from those
+        // beyond the map's edge; the finer ones are where the coarser ones have been.
         sample(coarsest ? cell / 2 : 0) {}
+
+  SampleParity parity() const { return sample == 0 ? SampleParity::even : SampleParity::odd; }
 };
+
+// The finest map, cast by whole tiles: sixteen rays so close together cost hardly more than one.
+struct Tiles {
+  BitGrid above;  // the texels above the horizon; each of them is in one of the next two
+  BitGrid visible, occluded;
+  BitGrid cast, todo;  // a bit a tile
+
+  explicit Tiles(int finest)
+      : above(finest), visible(finest), occluded(finest), cast(finest / 4), todo(finest / 4) {}
+};
+
+void clear(BitGrid& grid) { std::fill(grid.bits.begin(), grid.bits.end(), 0); }
+
+// Calls body(x, y) for the set bits, block by block, so that those called together are close.
+template <class Body>
+void for_each_set(const BitGrid& grid, const Body& body) {
+  constexpr int kSide = 16;
+  for (int y = 0; y < grid.size; y += kSide)
+    for (int k = 0; k < grid.words; ++k) {
+      Word any = 0;
+      for (int r = 0; r < kSide; ++r) any |= grid.row(y + r)[k];
+      while (any != 0) {
+        const int shift = std::countr_zero(any) & ~(kSide - 1);
+        any &= ~(Word{0xffff} << shift);
+        for (int r = 0; r < kSide; ++r)
+          for (Word bits = grid.row(y + r)[k] >> shift & 0xffff; bits != 0; bits &= bits - 1)
+            body(64 * k + shift + std::countr_zero(bits), y + r);
+      }
+    }
+}
+
+// Bit i: any of bits 4 i .. 4 i + 3.
+Word tiles_of(Word texels) {
+  texels |= texels >> 1;
+  texels |= texels >> 2;
+  texels &= 0x1111111111111111;
+  texels = (texels | texels >> 3) & 0x0303030303030303;
+  texels = (texels | texels >> 6) & 0x000f000f000f000f;
+  texels = (texels | texels >> 12) & 0x000000ff000000ff;
+  return (texels | texels >> 24) & 0xffff;
+}
 
 }  // namespace
 
 struct VisibilitySampler::Scratch::State {
-  BitGrid above;  // the finest texels above the horizon
-  std::vector<Level> levels;
-  std::vector<float> cosine;  // of the blocks
-  std::vector<Word> rows;     // two rows of neighbours
-  std::vector<unsigned char> dirty, changed;
+  Tiles tiles;
+  std::vector<Level> levels;  // coarser than the tiles' texels, the last of a cell a tile
+  int coarsest;
+  std::vector<float> cosine;                  // of the blocks
+  std::vector<unsigned char> uneven;          // blocks that the horizon crosses
+  std::vector<Word> rows;                     // two rows of neighbours
+  std::vector<unsigned char> changed, dirty;  // rows of the level in work
 
-  State(int finest, int coarsest) : above(finest) {
-    for (int size = coarsest; size <= finest; size *= 2)
+  State(int finest, int coarsest) : tiles(finest), coarsest(coarsest) {
+    for (int size = coarsest; size <= finest / 4; size *= 2)
       levels.emplace_back(size, finest, size == coarsest);
-    rows.resize(2 * static_cast<std::size_t>(above.words));
+    rows.resize(2 * static_cast<std::size_t>(tiles.above.words));
   }
 };
 
@@ -95,20 +140,60 @@ class VisibilitySampler::Pass {
  public:
   Pass(const VisibilitySampler& sampler, const Vector3f& origin, const Vector3f& normal,
        Scratch::State& state)
-      : sampler_(sampler), origin_(origin), normal_(normal), state_(state) {}
+      : sampler_(sampler),
+        origin_(origin),
+        normal_(normal),
+        state_(state),
+        above_(state.tiles.above) {}
 
-  // Whether any direction is above the horizon.
-  bool find_horizon() {
-    const Blocks& blocks = sampler_.blocks_;
-    const std::size_t count = blocks.x.size();
-    state_.cosine.resize(count);
-    for (std::size_t i = 0; i < count; ++i)
-      state_.cosine[i] =
-          blocks.x[i] * normal_.x() + blocks.y[i] * normal_.y() + blocks.z[i] * normal_.z();
-    const int across = state_.above.size / kBlock;
-    bool any = false;
-    for (int y = 0; y < across; ++y)
-      for (int x = 0; x < across; ++x) {
+  bool find_horizon();
+  void sample_coarsest(Level& level);
+  void refine(const Level& coarse, Level& fine);
+  void cast_all(Tiles& tiles);
+  void refine_to_tiles(const Level& level, Tiles& tiles);
+
+  std::uint64_t rays() const { return rays_; }
+
+ private:
+  Word block_above(int x, int y) const;
+  bool crosses_horizon(int x, int y, int size) const;
+  void cast(Level& level);
+  void add(Level& level, int x, int y, int texel_x, int texel_y);
+  void add_lowest(Level& level, int x, int y);
+  void flush(Level& level);
+  void cast(Tiles& tiles);
+  template <class Body>
+  void for_dirty_rows(int rows, const Body& body);
+  bool find_uncertain(Level& level);
+  bool find_uncertain(Tiles& tiles);
+
+  const VisibilitySampler& sampler_;
+  Vector3f origin_, normal_;
+  Scratch::State& state_;
+  BitGrid& above_;
+  std::uint64_t rays_ = 0;
+  // The rays that wait for a full packet.
+  DirectionTile packet_;
+  int cell_x_[16], cell_y_[16];
+  int lanes_ = 0;
+};
+
+// Returns whether any direction is above the horizon.
+bool VisibilitySampler::Pass::find_horizon() {
+  const Blocks& blocks = sampler_.blocks_;
+  const std::size_t count = blocks.x.size();
+  state_.cosine.resize(count);
+  state_.uneven.assign(count, 0);
+  for (std::size_t i = 0; i < count; ++i)
+    state_.cosine[i] =
+        blocks.x[i] * normal_.x() + blocks.y[i] * normal_.y() + blocks.z[i] * normal_.z();
+  const int across = above_.size / kBlock;
+  bool any = false;
+  for (int y = 0; y < across; ++y)
+    for (int k = 0; k < above_.words; ++k) {
+      Word rows[kBlock] = {};
+      for (int column = 0; column < 64 / kBlock; ++column) {
+        const int x = k * (64 / kBlock) + column;
         const auto i = static_cast<std::size_t>(y * across + x);
         const float cosine = state_.cosine[i];
         Word bits = 0;  // also where the normal is NaN
@@ -116,219 +201,267 @@ class VisibilitySampler::Pass {
           bits = ~Word{0};
         else if (cosine > -blocks.margin[i])
           bits = block_above(x, y);
+        state_.uneven[i] = bits != 0 && bits != ~Word{0};
         any |= bits != 0;
-        for (int row = 0; row < kBlock; ++row) {
-          Word& word = state_.above.row(y * kBlock + row)[x / 8];
-          const int shift = x % 8 * 8;
-          word = (word & ~(Word{0xff} << shift)) | (bits >> (8 * row) & 0xff) << shift;
-        }
+        for (int r = 0; r < kBlock; ++r)
+          rows[r] |= (bits >> (kBlock * r) & 0xff) << (kBlock * column);
       }
-    return any;
-  }
-
-  void sample_coarsest() {
-    Level& level = state_.levels.front();
-    for (auto* grid : {&level.visible, &level.occluded, &level.exact})
-      std::fill(grid->bits.begin(), grid->bits.end(), 0);
-    for (int y = 0; y < level.todo.size; y += 4)
-      for (int x = 0; x < level.todo.size; x += 4)
-        for (int i = 0; i < 16; ++i) sample_coarsest(level, x + i % 4, y + i / 4);
-    flush(level);
-  }
-
-  void refine(const Level& coarse, Level& fine) {
-    const SampleParity parity = coarse.sample == 0 ? SampleParity::even : SampleParity::odd;
-    gather_coarse_samples(coarse.visible, parity, fine.visible);
-    gather_coarse_samples(coarse.occluded, parity, fine.occluded);
-    place_coarse_samples(coarse.exact, parity, fine.exact);
-    for (std::size_t i = 0; i < fine.todo.bits.size(); ++i) {
-      fine.todo.bits[i] = fine.visible.bits[i] & fine.occluded.bits[i];
-      fine.exact.bits[i] &= ~fine.todo.bits[i];
-      fine.cast.bits[i] = fine.exact.bits[i];
+      for (int r = 0; r < kBlock; ++r) above_.row(y * kBlock + r)[k] = rows[r];
     }
-    const auto rows = static_cast<std::size_t>(fine.todo.size);
-    state_.changed.assign(rows, 1);
-    do {
-      cast(fine);
-    } while (find_uncertain(fine));
+  return any;
+}
+
+Word VisibilitySampler::Pass::block_above(int x, int y) const {
+  const auto tiles = static_cast<std::size_t>(above_.size / 4);
+  Word bits = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::size_t column = k % 2, row = k / 2;
+    const std::size_t tile =
+        (2 * static_cast<std::size_t>(y) + row) * tiles + 2 * static_cast<std::size_t>(x) + column;
+    const Word above = above_horizon(sampler_.finest_.tiles()[tile], normal_);
+    for (std::size_t r = 0; r < 4; ++r)
+      bits |= (above >> (4 * r) & 15) << (kBlock * (4 * row + r) + 4 * column);
   }
+  return bits;
+}
 
-  std::uint64_t rays() const { return rays_; }
-
- private:
-  Word block_above(int x, int y) const {
-    const auto tiles = static_cast<std::size_t>(state_.above.size / 4);
-    Word bits = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const std::size_t column = k % 2, row = k / 2;
-      const std::size_t tile = (2 * static_cast<std::size_t>(y) + row) * tiles +
-                               2 * static_cast<std::size_t>(x) + column;
-      const Word above = above_horizon(sampler_.finest_.tiles()[tile], normal_);
-      for (std::size_t r = 0; r < 4; ++r)
-        bits |= (above >> (4 * r) & 15) << (8 * (4 * row + r) + 4 * column);
-    }
-    return bits;
-  }
-
-  void sample_coarsest(Level& level, int x, int y) {
-    const int size = level.cell;
-    const int middle_x = x * size + level.sample, middle_y = y * size + level.sample;
-    const bool middle = state_.above.get(middle_x, middle_y);
-    if (middle) {
-      level.exact.set(x, y);
-      add(level, x, y, middle_x, middle_y);
-    }
-    if (crosses_horizon(x * size, y * size, size)) add_lowest(level, x, y);
-  }
-
-  // Whether some texels of a cell are above the horizon and some are not.
-  bool crosses_horizon(int x, int y, int size) const {
-    const int width = std::min(size, 64);
-    const Word mask = width == 64 ? ~Word{0} : (Word{1} << width) - 1;
-    Word any = 0, all = mask;
-    for (int k = y; k < y + size; ++k)
-      for (int i = x; i < x + size; i += width) {
-        const Word bits = state_.above.row(k)[i / 64] >> (i % 64) & mask;
-        any |= bits;
-        all &= bits;
-      }
-    return any != 0 && all != mask;
-  }
-
-  // Adds the cell's texel nearest to the horizon, if any is above it: what lies low over a surface
-  // is met there.
-  void add_lowest(Level& level, int x, int y) {
-    const int size = level.cell;
-    float lowest = 2;
-    int best_x = 0, best_y = 0;
-    for (int v = y * size; v < (y + 1) * size; ++v)
-      for (int u = x * size; u < (x + 1) * size; ++u) {
-        if (!state_.above.get(u, v)) continue;
-        const float cosine = sampler_.finest_.direction(u, v).dot(normal_);
-        if (cosine >= lowest) continue;
-        lowest = cosine;
-        best_x = u;
-        best_y = v;
-      }
-    if (lowest < 2) add(level, x, y, best_x, best_y);
-  }
-
-  void add(Level& level, int x, int y, int texel_x, int texel_y) {
-    const Vector3f direction = sampler_.finest_.direction(texel_x, texel_y);
-    packet_.x[lanes_] = direction.x();
-    packet_.y[lanes_] = direction.y();
-    packet_.z[lanes_] = direction.z();
-    cell_x_[lanes_] = x;
-    cell_y_[lanes_] = y;
-    if (++lanes_ == 16) flush(level);
-  }
-
-  void flush(Level& level) {
-    if (lanes_ == 0) return;
-    const std::uint32_t active = (1u << lanes_) - 1;
-    const std::uint32_t hit =
-        sampler_.scene_.occluded16(origin_, packet_.x, packet_.y, packet_.z, active);
-    for (int i = 0; i < lanes_; ++i)
-      (hit >> i & 1 ? level.occluded : level.visible).set(cell_x_[i], cell_y_[i]);
-    rays_ += static_cast<std::uint64_t>(lanes_);
-    lanes_ = 0;
-  }
-
-  // Casts level.todo, a tile at a time, and moves it to level.cast.
-  void cast(Level& level) {
-    for (int y = 0; y < level.todo.size; y += 4)
-      for (int k = 0; k < level.todo.words; ++k) {
-        Word rows[4];
-        for (int r = 0; r < 4; ++r) rows[r] = level.todo.row(y + r)[k];
-        Word any = rows[0] | rows[1] | rows[2] | rows[3];
-        while (any != 0) {
-          const int shift = std::countr_zero(any) & ~3;
-          any &= ~(Word{15} << shift);
-          for (int r = 0; r < 4; ++r)
-            for (Word bits = rows[r] >> shift & 15; bits != 0; bits &= bits - 1)
-              cast(level, 64 * k + shift + std::countr_zero(bits), y + r);
+void VisibilitySampler::Pass::sample_coarsest(Level& level) {
+  for (BitGrid* grid : {&level.visible, &level.occluded, &level.exact}) clear(*grid);
+  for (int y = 0; y < level.todo.size; y += 4)
+    for (int x = 0; x < level.todo.size; x += 4)
+      for (int i = 0; i < 16; ++i) {
+        const int cell_x = x + i % 4, cell_y = y + i / 4;
+        const int texel_x = cell_x * level.cell + level.sample;
+        const int texel_y = cell_y * level.cell + level.sample;
+        if (above_.get(texel_x, texel_y)) {
+          level.exact.set(cell_x, cell_y);
+          add(level, cell_x, cell_y, texel_x, texel_y);
         }
-        for (int r = 0; r < 4; ++r) {
-          if (rows[r] == 0) continue;
-          level.cast.row(y + r)[k] |= rows[r];
-          state_.changed[static_cast<std::size_t>(y + r)] = 1;
-        }
+        if (crosses_horizon(cell_x * level.cell, cell_y * level.cell, level.cell))
+          add_lowest(level, cell_x, cell_y);
       }
-    flush(level);
-  }
+  flush(level);
+}
 
-  void cast(Level& level, int x, int y) {
+// Whether some texels of a cell are above the horizon and some are not.
+bool VisibilitySampler::Pass::crosses_horizon(int x, int y, int size) const {
+  const auto block = static_cast<std::size_t>(y / kBlock * (above_.size / kBlock) + x / kBlock);
+  if (size <= kBlock && !state_.uneven[block]) return false;
+  const int width = std::min(size, 64);
+  const Word mask = width == 64 ? ~Word{0} : (Word{1} << width) - 1;
+  Word any = 0, all = mask;
+  for (int k = y; k < y + size; ++k)
+    for (int i = x; i < x + size; i += width) {
+      const Word bits = above_.row(k)[i / 64] >> (i % 64) & mask;
+      any |= bits;
+      all &= bits;
+    }
+  return any != 0 && all != mask;
+}
+
+void VisibilitySampler::Pass::refine(const Level& coarse, Level& fine) {
+  gather_coarse_samples(coarse.visible, coarse.parity(), fine.visible);
+  gather_coarse_samples(coarse.occluded, coarse.parity(), fine.occluded);
+  place_coarse_samples(coarse.exact, coarse.parity(), fine.exact);
+  for (std::size_t i = 0; i < fine.todo.bits.size(); ++i) {
+    fine.todo.bits[i] = fine.visible.bits[i] & fine.occluded.bits[i];
+    fine.exact.bits[i] &= ~fine.todo.bits[i];
+    fine.cast.bits[i] = fine.exact.bits[i];
+  }
+  state_.changed.assign(static_cast<std::size_t>(fine.todo.size), 1);
+  do {
+    cast(fine);
+  } while (find_uncertain(fine));
+}
+
+// Casts level.todo and adds it to level.cast.
+void VisibilitySampler::Pass::cast(Level& level) {
+  for_each_set(level.todo, [&](int x, int y) {
     level.visible.reset(x, y);
     level.occluded.reset(x, y);
-    const int sample_x = x * level.cell + level.sample, sample_y = y * level.cell + level.sample;
-    if (state_.above.get(sample_x, sample_y)) {
+    level.cast.set(x, y);
+    state_.changed[static_cast<std::size_t>(y)] = 1;
+    const int texel_x = x * level.cell + level.sample, texel_y = y * level.cell + level.sample;
+    if (above_.get(texel_x, texel_y)) {
       level.exact.set(x, y);
-      add(level, x, y, sample_x, sample_y);
+      add(level, x, y, texel_x, texel_y);
     } else {
       add_lowest(level, x, y);
     }
-  }
+  });
+  flush(level);
+}
 
-  // Fills level.todo with the cells that were not cast and differ from a neighbour.
-  bool find_uncertain(Level& level) {
-    const auto n = static_cast<std::size_t>(level.todo.size);
-    std::vector<unsigned char>& dirty = state_.dirty;
-    dirty.assign(n, 0);
-    for (std::size_t y = 0; y < n; ++y)
-      if (state_.changed[y]) {
-        dirty[y] = dirty[n - 1 - y] = 1;  // its ends touch those of the mirrored row
-        if (y > 0) dirty[y - 1] = 1;
-        if (y + 1 < n) dirty[y + 1] = 1;
-      }
-    std::fill(state_.changed.begin(), state_.changed.end(), 0);
-    Word* near_visible = state_.rows.data();
-    Word* near_occluded = near_visible + level.todo.words;
-    Word any = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      const int y = static_cast<int>(i);
-      Word* todo = level.todo.row(y);
-      if (!dirty[i]) {
-        std::fill_n(todo, level.todo.words, 0);
-        continue;
-      }
-      gather_neighbours(level.visible, y, near_visible);
-      gather_neighbours(level.occluded, y, near_occluded);
-      for (int k = 0; k < level.todo.words; ++k) {
-        todo[k] = ~level.cast.row(y)[k] & ((near_visible[k] & level.occluded.row(y)[k]) |
-                                           (near_occluded[k] & level.visible.row(y)[k]));
-        any |= todo[k];
-      }
+// Adds the cell's texel nearest to the horizon, if any is above it: what stands low over a surface
+// is met there.
+void VisibilitySampler::Pass::add_lowest(Level& level, int x, int y) {
+  const int size = level.cell;
+  float lowest = 2;
+  int best_x = 0, best_y = 0;
+  for (int v = y * size; v < (y + 1) * size; ++v)
+    for (int u = x * size; u < (x + 1) * size; ++u) {
+      if (!above_.get(u, v)) continue;
+      const float cosine = sampler_.finest_.direction(u, v).dot(normal_);
+      if (cosine >= lowest) continue;
+      lowest = cosine;
+      best_x = u;
+      best_y = v;
     }
-    return any != 0;
-  }
+  if (lowest < 2) add(level, x, y, best_x, best_y);
+}
 
-  const VisibilitySampler& sampler_;
-  Vector3f origin_, normal_;
-  Scratch::State& state_;
-  std::uint64_t rays_ = 0;
-  DirectionTile packet_;
-  int cell_x_[16], cell_y_[16];
-  int lanes_ = 0;
-};
+void VisibilitySampler::Pass::add(Level& level, int x, int y, int texel_x, int texel_y) {
+  const Vector3f direction = sampler_.finest_.direction(texel_x, texel_y);
+  packet_.x[lanes_] = direction.x();
+  packet_.y[lanes_] = direction.y();
+  packet_.z[lanes_] = direction.z();
+  cell_x_[lanes_] = x;
+  cell_y_[lanes_] = y;
+  if (++lanes_ == 16) flush(level);
+}
+
+void VisibilitySampler::Pass::flush(Level& level) {
+  if (lanes_ == 0) return;
+  const std::uint32_t active = (1u << lanes_) - 1;
+  const std::uint32_t hit =
+      sampler_.scene_.occluded16(origin_, packet_.x, packet_.y, packet_.z, active);
+  for (int i = 0; i < lanes_; ++i)
+    (hit >> i & 1 ? level.occluded : level.visible).set(cell_x_[i], cell_y_[i]);
+  rays_ += static_cast<std::uint64_t>(lanes_);
+  lanes_ = 0;
+}
+
+void VisibilitySampler::Pass::cast_all(Tiles& tiles) {
+  std::fill(tiles.todo.bits.begin(), tiles.todo.bits.end(), ~Word{0});
+  if (tiles.todo.size < 64)
+    for (Word& word : tiles.todo.bits) word = (Word{1} << tiles.todo.size) - 1;
+  clear(tiles.visible);
+  clear(tiles.occluded);
+  clear(tiles.cast);
+  state_.changed.assign(static_cast<std::size_t>(tiles.todo.size), 0);
+  cast(tiles);
+}
+
+void VisibilitySampler::Pass::refine_to_tiles(const Level& level, Tiles& tiles) {
+  // `cast` serves as a second set at first.
+  gather_samples_around(level.visible, level.parity(), tiles.todo);
+  gather_samples_around(level.occluded, level.parity(), tiles.cast);
+  fill_cells(tiles.todo, tiles.visible);
+  for (std::size_t i = 0; i < tiles.todo.bits.size(); ++i) tiles.todo.bits[i] &= tiles.cast.bits[i];
+  for (std::size_t i = 0; i < tiles.above.bits.size(); ++i) {
+    tiles.visible.bits[i] &= tiles.above.bits[i];
+    tiles.occluded.bits[i] = tiles.above.bits[i] & ~tiles.visible.bits[i];
+  }
+  clear(tiles.cast);
+  state_.changed.assign(static_cast<std::size_t>(tiles.todo.size), 1);
+  do {
+    cast(tiles);
+  } while (find_uncertain(tiles));
+}
+
+void VisibilitySampler::Pass::cast(Tiles& tiles) {
+  for_each_set(tiles.todo, [&](int x, int y) {
+    tiles.cast.set(x, y);
+    state_.changed[static_cast<std::size_t>(y)] = 1;
+    const int word = x / 16, shift = x % 16 * 4;
+    std::uint32_t above = 0;
+    for (int r = 0; r < 4; ++r)
+      above |= static_cast<std::uint32_t>(above_.row(4 * y + r)[word] >> shift & 15) << (4 * r);
+    if (above == 0) return;
+    const auto index = static_cast<std::size_t>(y * tiles.todo.size + x);
+    const DirectionTile& tile = sampler_.finest_.tiles()[index];
+    const std::uint32_t hit = sampler_.scene_.occluded16(origin_, tile.x, tile.y, tile.z, above);
+    rays_ += static_cast<std::uint64_t>(std::popcount(above));
+    for (int r = 0; r < 4; ++r) {
+      const auto put = [&](BitGrid& grid, std::uint32_t bits) {
+        Word& row = grid.row(4 * y + r)[word];
+        row = (row & ~(Word{15} << shift)) | Word{bits >> (4 * r) & 15} << shift;
+      };
+      put(tiles.visible, above & ~hit);
+      put(tiles.occluded, hit);
+    }
+  });
+}
+
+// Calls body(y) for the rows that have changed or touch one that has, and forgets the changes.
+template <class Body>
+void VisibilitySampler::Pass::for_dirty_rows(int rows, const Body& body) {
+  const auto n = static_cast<std::size_t>(rows);
+  state_.dirty.assign(n, 0);
+  for (std::size_t y = 0; y < n; ++y)
+    if (state_.changed[y]) {
+      state_.dirty[y] = state_.dirty[n - 1 - y] = 1;  // its ends touch those of the mirrored row
+      if (y > 0) state_.dirty[y - 1] = 1;
+      if (y + 1 < n) state_.dirty[y + 1] = 1;
+    }
+  std::fill(state_.changed.begin(), state_.changed.end(), 0);
+  for (std::size_t y = 0; y < n; ++y)
+    if (state_.dirty[y]) body(static_cast<int>(y));
+}
+
+// Sets level.todo to the cells that were not cast and differ from a neighbour.
+bool VisibilitySampler::Pass::find_uncertain(Level& level) {
+  Word* near_visible = state_.rows.data();
+  Word* near_occluded = near_visible + level.todo.words;
+  Word any = 0;
+  clear(level.todo);
+  for_dirty_rows(level.todo.size, [&](int y) {
+    gather_neighbours(level.visible, y, near_visible);
+    gather_neighbours(level.occluded, y, near_occluded);
+    for (int k = 0; k < level.todo.words; ++k) {
+      const Word todo = ~level.cast.row(y)[k] & ((near_visible[k] & level.occluded.row(y)[k]) |
+                                                 (near_occluded[k] & level.visible.row(y)[k]));
+      level.todo.row(y)[k] = todo;
+      any |= todo;
+    }
+  });
+  return any != 0;
+}
+
+// Sets tiles.todo to the tiles that were not cast and have a texel that differs from a neighbour.
+bool VisibilitySampler::Pass::find_uncertain(Tiles& tiles) {
+  Word* near_visible = state_.rows.data();
+  Word* near_occluded = near_visible + tiles.visible.words;
+  Word any = 0;
+  clear(tiles.todo);
+  for_dirty_rows(tiles.todo.size, [&](int y) {
+    for (int r = 4 * y; r < 4 * y + 4; ++r) {
+      gather_neighbours(tiles.visible, r, near_visible);
+      gather_neighbours(tiles.occluded, r, near_occluded);
+      for (int k = 0; k < tiles.visible.words; ++k)
+        tiles.todo.row(y)[k / 4] |= tiles_of((near_visible[k] & tiles.occluded.row(r)[k]) |
+                                             (near_occluded[k] & tiles.visible.row(r)[k]))
+                                    << (k % 4 * 16);
+    }
+    for (int k = 0; k < tiles.todo.words; ++k) {
+      tiles.todo.row(y)[k] &= ~tiles.cast.row(y)[k];
+      any |= tiles.todo.row(y)[k];
+    }
+  });
+  return any != 0;
+}
 
 std::uint64_t VisibilitySampler::sample(const Vector3f& origin, const Vector3f& normal,
                                         VisibilityMask& mask, Scratch& scratch) const {
   const int n = finest_.resolution();
-  if (!scratch.state_ || scratch.state_->above.size != n ||
-      scratch.state_->levels.front().todo.size != coarsest_)
+  if (!scratch.state_ || scratch.state_->tiles.above.size != n ||
+      scratch.state_->coarsest != coarsest_)
     scratch.state_ = std::make_unique<Scratch::State>(n, coarsest_);
   Scratch::State& state = *scratch.state_;
   Pass pass(*this, origin, normal, state);
   if (!pass.find_horizon() || scene_.hemisphere_is_empty(origin, normal)) {
-    mask.bits = state.above.bits;
+    mask.bits = state.tiles.above.bits;
     return 0;
   }
-  pass.sample_coarsest();
-  for (std::size_t k = 1; k < state.levels.size(); ++k)
-    pass.refine(state.levels[k - 1], state.levels[k]);
-  const BitGrid& visible = state.levels.back().visible;
-  for (std::size_t i = 0; i < mask.bits.size(); ++i)
-    mask.bits[i] = visible.bits[i] & state.above.bits[i];
+  if (state.levels.empty()) {
+    pass.cast_all(state.tiles);
+  } else {
+    pass.sample_coarsest(state.levels.front());
+    for (std::size_t k = 1; k < state.levels.size(); ++k)
+      pass.refine(state.levels[k - 1], state.levels[k]);
+    pass.refine_to_tiles(state.levels.back(), state.tiles);
+  }
+  mask.bits = state.tiles.visible.bits;
   return pass.rays();
 }
 
