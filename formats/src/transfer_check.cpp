@@ -11,7 +11,7 @@ namespace burnish {
 namespace {
 
 constexpr float kUnitTolerance = 1e-3f;
-constexpr float kDistanceTolerance = 1e-3f;  // radians; beyond pi only by rounding
+constexpr float kRangeTolerance = 1e-3f;  // of means, whose range only rounding exceeds
 
 struct TransferChecker {
   const Transfer& transfer;
@@ -75,38 +75,81 @@ struct TransferChecker {
             fmt::format("cosine {} with the normal, expected 0 within {}", cosine, kUnitTolerance));
     }
     check_triangles(transfer_path::kTriangles, transfer.triangles, vertices);
+    check_parts();
   }
 
-  void check_basis(const SsdfBasis& basis) const {
+  /// The next of consecutive ranges that cover all. Sums in 64 bits do not overflow.
+  void check_range_of_part(size_t part, const char* what, std::uint64_t first,
+                           std::uint64_t expected, std::uint64_t end, std::uint64_t all) const {
+    const bool is_last = part + 1 == transfer.parts.size();
+    if (first != expected || end > all || (is_last && end != all))
+      fail(fmt::format("{}[{}]", transfer_path::kPartRanges, part),
+           fmt::format("{} {}..{}, expected them from {} to {}{}", what, first, end, expected,
+                       is_last ? "" : "at most ", all));
+  }
+
+  void check_parts() const {
+    std::uint64_t vertex = 0, triangle = 0;
+    for (size_t i = 0; i < transfer.parts.size(); ++i) {
+      const MeshPart& part = transfer.parts[i];
+      check_text(fmt::format("{}[{}]", transfer_path::kPartNames, i), part.name);
+      const std::uint64_t vertex_end = std::uint64_t{part.first_vertex} + part.vertices;
+      const std::uint64_t triangle_end = std::uint64_t{part.first_triangle} + part.triangles;
+      check_range_of_part(i, "vertices", part.first_vertex, vertex, vertex_end,
+                          transfer.vertex_count());
+      check_range_of_part(i, "triangles", part.first_triangle, triangle, triangle_end,
+                          transfer.triangles.size());
+      for (std::uint64_t t = triangle; t < triangle_end; ++t)
+        for (const std::uint32_t index : transfer.triangles[t])
+          if (index < vertex || index >= vertex_end)
+            fail(fmt::format("{}[{}]", transfer_path::kTriangles, t),
+                 fmt::format("vertex {}, expected one of its part: {} or more, below {}", index,
+                             vertex, vertex_end));
+      vertex = vertex_end;
+      triangle = triangle_end;
+    }
+  }
+
+  /// Means and eigenimages of `maps` maps in one basis.
+  template <class Basis>
+  void check_images(const char* mean_path, const char* eigen_path, const Basis& basis, size_t maps,
+                    float low, float high) const {
     const auto resolution = static_cast<unsigned>(std::max(basis.resolution, 0));
     if (basis.resolution < kMinSsdfResolution || basis.resolution > kMaxSsdfResolution ||
         !std::has_single_bit(resolution))
-      fail(transfer_path::kMean,
-           fmt::format("resolution {}, expected a power of two in {}..{}", basis.resolution,
-                       kMinSsdfResolution, kMaxSsdfResolution));
+      fail(mean_path, fmt::format("resolution {}, expected a power of two in {}..{}",
+                                  basis.resolution, kMinSsdfResolution, kMaxSsdfResolution));
     if (basis.terms < 1 || basis.terms > kMaxTerms)
-      fail(transfer_path::kEigen, fmt::format("{} terms, expected 1..{}", basis.terms, kMaxTerms));
-    const size_t texels = size_t{resolution} * resolution;
-    check_count(transfer_path::kMean, basis.mean.size(), texels);
-    check_count(transfer_path::kEigen, basis.eigen.size(),
-                texels * static_cast<size_t>(basis.terms));
-    check_finite(transfer_path::kMean, basis.mean);
-    check_finite(transfer_path::kEigen, basis.eigen);
-    for (const float distance : basis.mean)
-      if (std::abs(distance) > kPi<float> + kDistanceTolerance)
-        fail(transfer_path::kMean, fmt::format("{} rad, expected -pi..pi", distance));
+      fail(eigen_path, fmt::format("{} terms, expected 1..{}", basis.terms, kMaxTerms));
+    const size_t values = maps * resolution * resolution;
+    check_count(mean_path, basis.mean.size(), values);
+    check_count(eigen_path, basis.eigen.size(), values * static_cast<size_t>(basis.terms));
+    check_finite(mean_path, basis.mean);
+    check_finite(eigen_path, basis.eigen);
+    for (size_t i = 0; i < values; ++i)
+      if (basis.mean[i] < low - kRangeTolerance || basis.mean[i] > high + kRangeTolerance)
+        fail(fmt::format("{}, value {}", mean_path, i),
+             fmt::format("{}, expected {}..{}", basis.mean[i], low, high));
   }
 
-  void check_visibility() const {
-    const size_t vertices = transfer.vertex_count(), bases = transfer.bases.size();
-    if (bases < 1 || bases > kMaxBases)
-      fail(transfer_path::kMean, fmt::format("{} bases, expected 1..{}", bases, kMaxBases));
-    for (const SsdfBasis& basis : transfer.bases) {
-      check_basis(basis);
-      if (basis.resolution != transfer.bases[0].resolution ||
-          basis.terms != transfer.bases[0].terms)
-        fail(transfer_path::kEigen, "the bases differ in resolution or terms");
-    }
+  void check_ssdf_basis(const SsdfBasis& basis) const {
+    const SsdfBasis& first = transfer.bases[0];
+    if (!(basis.amplitude_rad >= 0) || !std::isfinite(basis.amplitude_rad))
+      fail(fmt::format("{}, attribute amplitude_rad", transfer_path::kSsdf),
+           fmt::format("{}, expected 0 or more", basis.amplitude_rad));
+    const float most = basis.amplitude_rad > 0 ? 1 : kPi<float>;
+    check_images(transfer_path::kMean, transfer_path::kEigen, basis, 1, -most, most);
+    if (basis.resolution != first.resolution || basis.terms != first.terms ||
+        basis.amplitude_rad != first.amplitude_rad)
+      fail(transfer_path::kEigen, "the bases differ in resolution, terms or amplitude");
+  }
+
+  void check_ssdf() const {
+    const size_t bases = transfer.bases.size();
+    if (bases > kMaxBases)
+      fail(transfer_path::kMean, fmt::format("{} bases, expected 0..{}", bases, kMaxBases));
+    for (const SsdfBasis& basis : transfer.bases) check_ssdf_basis(basis);
+    const size_t vertices = bases == 0 ? 0 : transfer.vertex_count();
     check_count(transfer_path::kBasisId, transfer.basis_id.size(), vertices);
     for (size_t i = 0; i < vertices; ++i)
       if (transfer.basis_id[i] >= bases)
@@ -115,6 +158,44 @@ struct TransferChecker {
     check_count(transfer_path::kCoefficients, transfer.coefficients.size(),
                 vertices * static_cast<size_t>(transfer.terms()));
     check_finite(transfer_path::kCoefficients, transfer.coefficients);
+  }
+
+  void check_bandwidths(const std::vector<float>& bandwidths) const {
+    if (bandwidths.empty() || bandwidths.size() > kMaxLadderLevels)
+      fail(transfer_path::kLadderBandwidths,
+           fmt::format("{} levels, expected 1..{}", bandwidths.size(), kMaxLadderLevels));
+    check_finite(transfer_path::kLadderBandwidths, bandwidths);
+    for (size_t i = 0; i < bandwidths.size(); ++i)
+      if (!(bandwidths[i] > (i == 0 ? 0 : bandwidths[i - 1])))
+        fail(fmt::format("{}, value {}", transfer_path::kLadderBandwidths, i),
+             fmt::format("{}, expected positive numbers that rise", bandwidths[i]));
+  }
+
+  void check_ladder() const {
+    const std::vector<LadderBasis>& bases = transfer.ladder_bases;
+    if (!bases.empty() && transfer.bases.empty())
+      fail(transfer_path::kLadderMean, "a ladder, expected none where the SSDF has no basis");
+    if (bases.size() > 1 && bases.size() != transfer.bases.size())
+      fail(transfer_path::kLadderMean,
+           fmt::format("{} bases, expected none, one, or one for each of the SSDF's {}",
+                       bases.size(), transfer.bases.size()));
+    for (const LadderBasis& basis : bases) {
+      check_bandwidths(basis.bandwidths);
+      check_images(transfer_path::kLadderMean, transfer_path::kLadderEigen, basis,
+                   basis.bandwidths.size(), 0, 1);
+      if (basis.resolution != bases[0].resolution || basis.terms != bases[0].terms ||
+          basis.bandwidths != bases[0].bandwidths)
+        fail(transfer_path::kLadderEigen, "the bases differ in resolution, terms or bandwidths");
+    }
+    const size_t vertices = bases.empty() ? 0 : transfer.vertex_count();
+    check_count(transfer_path::kLadderCoefficients, transfer.ladder_coefficients.size(),
+                vertices * static_cast<size_t>(transfer.ladder_terms()));
+    check_finite(transfer_path::kLadderCoefficients, transfer.ladder_coefficients);
+    const float crossover = transfer.ladder_crossover;
+    if (!(crossover >= 0) || !std::isfinite(crossover) || (bases.empty() && crossover != 0))
+      fail(fmt::format("{}, attribute crossover", transfer_path::kLadder),
+           fmt::format("{}, expected {}", crossover,
+                       bases.empty() ? "0 without a ladder" : "0 or more"));
   }
 
   void check_occluders() const {
@@ -126,10 +207,19 @@ struct TransferChecker {
     check_triangles(transfer_path::kOccluderTriangles, transfer.occluder_triangles, vertices);
   }
 
-  void check_text(const char* name, const std::string& text) const {
-    if (text.size() > kMaxAttributeString || text.find('\0') != std::string::npos)
-      fail(fmt::format("{}, attribute {}", transfer_path::kProvenance, name),
-           fmt::format("expected at most {} bytes, none of them zero", kMaxAttributeString));
+  void check_text(const std::string& place, const std::string& text) const {
+    if (text.size() > kMaxText || text.find('\0') != std::string::npos)
+      fail(place, fmt::format("expected at most {} bytes, none of them zero", kMaxText));
+  }
+
+  void check_errors(const char* path, const std::vector<LobeError>& errors) const {
+    for (size_t i = 0; i < errors.size(); ++i) {
+      const auto [bandwidth, error] = errors[i];
+      if (!(bandwidth > 0 && error >= 0) || !std::isfinite(bandwidth) || !std::isfinite(error))
+        fail(fmt::format("{}[{}]", path, i),
+             fmt::format("error {} at bandwidth {}, expected 0 or more at a positive one", error,
+                         bandwidth));
+    }
   }
 
   void check_hash(const char* name, const std::string& hash) const {
@@ -149,15 +239,21 @@ struct TransferChecker {
 
   void check_provenance() const {
     const Provenance& provenance = transfer.provenance;
-    check_text("version", provenance.version);
-    check_text("mesh_name", provenance.mesh_name);
+    check_text("/provenance, attribute version", provenance.version);
+    check_text("/provenance, attribute mesh_name", provenance.mesh_name);
     check_hash("mesh_hash", provenance.mesh_hash);
     check_hash("occluder_hash", provenance.occluder_hash);
     check_range("directions", provenance.directions, 0, 1 << 16);
+    check_range("coarsest", provenance.coarsest, 0, provenance.directions);
+    check_range("origin_offset", provenance.origin_offset, 0.0, std::numeric_limits<double>::max());
+    check_range("residual_vertices", provenance.residual_vertices, 0,
+                std::numeric_limits<int>::max());
     check_range("training_vertices", provenance.training_vertices, 0,
                 std::numeric_limits<int>::max());
     check_range("residual_rms_rad", provenance.residual_rms_rad, 0.0, 2 * kPi<double>);
     check_range("wrong_sign_fraction", provenance.wrong_sign_fraction, 0.0, 1.0);
+    check_errors(transfer_path::kSsdfErrors, provenance.ssdf_errors);
+    check_errors(transfer_path::kLadderErrors, provenance.ladder_errors);
   }
 };
 
@@ -166,7 +262,8 @@ struct TransferChecker {
 void check_transfer(const Transfer& transfer, ErrorKind kind, const std::string& subject) {
   const TransferChecker checker{transfer, kind, subject};
   checker.check_mesh();
-  checker.check_visibility();
+  checker.check_ssdf();
+  checker.check_ladder();
   checker.check_occluders();
   checker.check_provenance();
 }

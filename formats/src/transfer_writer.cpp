@@ -1,9 +1,7 @@
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
-#include <cstring>
+#include <numeric>
 #include <string_view>
 #include <vector>
 
@@ -11,245 +9,220 @@
 #include <fmt/format.h>
 
 #include "burnish/formats/output_file.h"
-#include "hdf5_support.h"
+#include "hdf5_writer.h"
 #include "transfer_layout.h"
 
 namespace burnish {
 namespace {
 
-static_assert(sizeof(Vector3f) == 3 * sizeof(float), "vectors are written as rows of floats");
-static_assert(sizeof(Triangle) == 3 * sizeof(std::uint32_t));
-static_assert(std::endian::native == std::endian::little, "float16 is written as it is in memory");
+constexpr long kMostSteps = 32767;  // the range of int16 without its odd end
 
-constexpr hsize_t kChunkBytes = 1 << 20;
-constexpr unsigned kMaxAttributes = 64;  // of a group
+hsize_t extent(int value) { return static_cast<hsize_t>(value); }
 
-/// The memory of an HDF5 file that is open in memory, kept when HDF5 closes the file and would free
-/// it. (H5Fget_file_image alters a byte of the superblock after its checksum was taken.)
-struct FileMemory {
-  void* data = nullptr;
-  size_t capacity = 0;
-
-  FileMemory() = default;
-  FileMemory(const FileMemory&) = delete;
-  FileMemory& operator=(const FileMemory&) = delete;
-  ~FileMemory() { std::free(data); }
-
-  H5FD_file_image_callbacks_t callbacks() {
-    H5FD_file_image_callbacks_t callbacks = {};
-    callbacks.image_malloc = [](size_t size, H5FD_file_image_op_t, void*) {
-      return std::malloc(size);
-    };
-    callbacks.image_memcpy = [](void* to, const void* from, size_t size, H5FD_file_image_op_t,
-                                void*) { return std::memcpy(to, from, size); };
-    callbacks.image_realloc = [](void* memory, size_t size, H5FD_file_image_op_t, void* self) {
-      static_cast<FileMemory*>(self)->capacity = size;
-      return std::realloc(memory, size);
-    };
-    callbacks.image_free = [](void* memory, H5FD_file_image_op_t operation, void* self) -> herr_t {
-      if (operation == H5FD_FILE_IMAGE_OP_FILE_CLOSE)
-        static_cast<FileMemory*>(self)->data = memory;
-      else
-        std::free(memory);
-      return 0;
-    };
-    callbacks.udata_copy = [](void* self) { return self; };
-    callbacks.udata_free = [](void*) -> herr_t { return 0; };
-    callbacks.udata = this;
-    return callbacks;
-  }
-
-  /// The file, up to the end that its superblock states.
-  std::string_view bytes() const {
-    constexpr size_t kEndOfFileField = 28;  // superblock version 3: an address of 8 bytes
-    std::uint64_t end = 0;
-    if (!data || capacity < kEndOfFileField + sizeof(end)) return {};
-    std::memcpy(&end, static_cast<const char*>(data) + kEndOfFileField, sizeof(end));
-    return {static_cast<const char*>(data), end <= capacity ? end : 0};
-  }
-};
+/// Writes floats that are had some rows at a time, each through `encode(value, index)`.
+template <class Stored, class Values, class Encode>
+void write_encoded(Hdf5Writer& writer, const char* name, const std::vector<hsize_t>& shape,
+                   hsize_t rows_at_a_time, Values values, Encode encode) {
+  const hsize_t row_size = std::accumulate(shape.begin() + 1, shape.end(), hsize_t{1},
+                                           [](hsize_t a, hsize_t b) { return a * b; });
+  std::vector<Stored> block;
+  writer.dataset(name, Hdf5Type::of<Stored>(), shape, rows_at_a_time,
+                 [&](hsize_t first, hsize_t rows) {
+                   const float* const source = values(first);
+                   block.resize(rows * row_size);
+                   for (size_t i = 0; i < block.size(); ++i)
+                     block[i] = encode(source[i], first * row_size + i);
+                   return block.data();
+                 });
+}
 
 class TransferWriter {
  public:
-  TransferWriter(const std::string& path, int compression_level)
-      : path_(path), compression_level_(compression_level) {
-    Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-    Hdf5Id creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose);
-    // In memory: HDF5 recovers badly from a full disk. The 1.10 file structures carry checksums.
-    check(H5Pset_fapl_core(access.get(), kChunkBytes, false), "memory file");
-    check(H5Pset_libver_bounds(access.get(), H5F_LIBVER_V110, H5F_LIBVER_V110), "version bounds");
-    H5FD_file_image_callbacks_t callbacks = memory_.callbacks();
-    check(H5Pset_file_image_callbacks(access.get(), &callbacks), "memory file");
-    // No times anywhere: equal transfers must give equal bytes.
-    check(H5Pset_obj_track_times(creation.get(), false), "creation properties");
-    file_ = Hdf5Id(H5Fcreate("transfer", H5F_ACC_TRUNC, creation.get(), access.get()), H5Fclose);
-    check(file_.get(), "file");
-  }
+  TransferWriter(const Transfer& transfer, const std::string& path,
+                 const WriteTransferOptions& options)
+      : transfer_(transfer),
+        path_(path),
+        type_(options.coefficient_type),
+        writer_(path, options.compression_level) {}
 
-  void group(const char* name) {
-    Hdf5Id properties(H5Pcreate(H5P_GROUP_CREATE), H5Pclose);
-    check(H5Pset_obj_track_times(properties.get(), false), name);
-    // All attributes in the group's own header; HDF5 would move more than 8 to a heap.
-    check(H5Pset_attr_phase_change(properties.get(), kMaxAttributes, 0), name);
-    Hdf5Id group(H5Gcreate2(file_.get(), name, H5P_DEFAULT, properties.get(), H5P_DEFAULT),
-                 H5Gclose);
-    check(group.get(), name);
-  }
-
-  void dataset(const char* name, hid_t file_type, hid_t memory_type,
-               const std::vector<hsize_t>& shape, const void* values) {
-    const hsize_t element_bytes = H5Tget_size(file_type);
-    Hdf5Id space(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr), H5Sclose);
-    check(space.get(), name);
-    Hdf5Id properties(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-    check(H5Pset_obj_track_times(properties.get(), false), name);
-    const bool is_empty = std::find(shape.begin(), shape.end(), hsize_t{0}) != shape.end();
-    if (!is_empty) {  // HDF5 has no chunks of nothing
-      const std::vector<hsize_t> chunk = chunk_shape(shape, element_bytes);
-      check(H5Pset_chunk(properties.get(), static_cast<int>(chunk.size()), chunk.data()), name);
-      check(H5Pset_shuffle(properties.get()), name);
-      check(H5Pset_deflate(properties.get(), static_cast<unsigned>(compression_level_)), name);
-      check(H5Pset_fletcher32(properties.get()), name);
-    }
-    Hdf5Id dataset(H5Dcreate2(file_.get(), name, file_type, space.get(), H5P_DEFAULT,
-                              properties.get(), H5P_DEFAULT),
-                   H5Dclose);
-    check(dataset.get(), name);
-    if (!is_empty)
-      check(H5Dwrite(dataset.get(), memory_type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), name);
-  }
-
-  void points(const char* name, const std::vector<Vector3f>& values) {
-    dataset(name, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {values.size(), 3}, values.data());
-  }
-  void triangles(const char* name, const std::vector<Triangle>& values) {
-    dataset(name, H5T_STD_U32LE, H5T_NATIVE_UINT32, {values.size(), 3}, values.data());
-  }
-
-  void attribute(const char* object, const char* name, hid_t file_type, hid_t memory_type,
-                 const void* value) {
-    Hdf5Id space(H5Screate(H5S_SCALAR), H5Sclose);
-    Hdf5Id attribute(H5Acreate_by_name(file_.get(), object, name, file_type, space.get(),
-                                       H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT),
-                     H5Aclose);
-    check(attribute.get(), name);
-    check(H5Awrite(attribute.get(), memory_type, value), name);
-  }
-  void attribute(const char* object, const char* name, const std::string& text) {
-    // Of fixed length: variable strings live in a heap without checksums.
-    Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose);
-    check(H5Tset_size(type.get(), text.size() + 1), name);
-    check(H5Tset_cset(type.get(), H5T_CSET_UTF8), name);
-    attribute(object, name, type.get(), type.get(), text.c_str());
-  }
-  void attribute(const char* object, const char* name, std::int32_t value) {
-    attribute(object, name, H5T_STD_I32LE, H5T_NATIVE_INT32, &value);
-  }
-  void attribute(const char* object, const char* name, std::uint64_t value) {
-    attribute(object, name, H5T_STD_U64LE, H5T_NATIVE_UINT64, &value);
-  }
-  void attribute(const char* object, const char* name, double value) {
-    attribute(object, name, H5T_IEEE_F64LE, H5T_NATIVE_DOUBLE, &value);
-  }
-
-  /// Closes the file; its bytes live as long as this object.
-  std::string_view finish() {
-    check(H5Fflush(file_.get(), H5F_SCOPE_GLOBAL), "file");
-    check(H5Fclose(file_.release()), "file");
-    const std::string_view bytes = memory_.bytes();
-    check(bytes.empty() ? -1 : 0, "file");
-    return bytes;
+  /// The bytes live as long as this object.
+  std::string_view write() {
+    writer_.attribute("/", "format", std::string(kTransferFormatName));
+    writer_.attribute("/", "format_version", std::int32_t{kTransferFormatVersion});
+    write_mesh();
+    writer_.group(transfer_path::kVisibility);
+    writer_.attribute(transfer_path::kVisibility, "bases",
+                      static_cast<std::int32_t>(transfer_.bases.size()));
+    writer_.attribute(transfer_path::kVisibility, "ladder_bases",
+                      static_cast<std::int32_t>(transfer_.ladder_bases.size()));
+    if (!transfer_.bases.empty()) write_ssdf();
+    if (!transfer_.ladder_bases.empty()) write_ladder();
+    write_provenance();
+    return writer_.finish();
   }
 
  private:
-  void check(std::int64_t result, const char* place) const {
-    if (result < 0)
-      throw Error(ErrorKind::output, path_,
-                  fmt::format("{}: cannot write HDF5: {}", place, hdf5_reason()));
+  void write_points(const char* name, const std::vector<Vector3f>& values) {
+    writer_.dataset(name, Hdf5Type::of<float>(), {values.size(), 3}, values.data());
+  }
+  void write_triangles(const char* name, const std::vector<Triangle>& values) {
+    writer_.dataset(name, Hdf5Type::of<std::uint32_t>(), {values.size(), 3}, values.data());
   }
 
-  /// As many whole rows, from the last dimension up, as a chunk's bytes allow.
-  static std::vector<hsize_t> chunk_shape(const std::vector<hsize_t>& shape,
-                                          hsize_t element_bytes) {
-    std::vector<hsize_t> chunk(shape.size(), 1);
-    hsize_t left = kChunkBytes / element_bytes;
-    for (size_t d = shape.size(); d-- > 0;) {
-      chunk[d] = std::clamp<hsize_t>(left, 1, shape[d]);
-      left /= chunk[d];
+  void write_mesh() {
+    writer_.group("/mesh");
+    write_points(transfer_path::kPositions, transfer_.positions);
+    write_points(transfer_path::kNormals, transfer_.normals);
+    write_points(transfer_path::kTangents, transfer_.tangents);
+    writer_.array(transfer_path::kFileVertex, {transfer_.file_vertex.size()},
+                  transfer_.file_vertex);
+    write_triangles(transfer_path::kTriangles, transfer_.triangles);
+    write_parts();
+    writer_.group("/occluders");
+    write_points(transfer_path::kOccluderPositions, transfer_.occluder_positions);
+    write_triangles(transfer_path::kOccluderTriangles, transfer_.occluder_triangles);
+  }
+
+  void write_parts() {
+    const std::vector<MeshPart>& parts = transfer_.parts;
+    size_t longest = 0;
+    for (const MeshPart& part : parts) longest = std::max(longest, part.name.size());
+    const size_t stride = longest + 1;
+    std::string names(parts.size() * stride, '\0');
+    std::vector<std::uint32_t> ranges;
+    for (size_t i = 0; i < parts.size(); ++i) {
+      const MeshPart& part = parts[i];
+      std::copy(part.name.begin(), part.name.end(), names.data() + i * stride);
+      ranges.insert(ranges.end(),
+                    {part.first_vertex, part.vertices, part.first_triangle, part.triangles});
     }
-    return chunk;
+    writer_.group(transfer_path::kParts);
+    writer_.dataset(transfer_path::kPartNames, Hdf5Type::text(stride), {parts.size()},
+                    names.data());
+    writer_.array(transfer_path::kPartRanges, {parts.size(), 4}, ranges);
   }
 
+  void write_ssdf() {
+    const std::vector<SsdfBasis>& bases = transfer_.bases;
+    const SsdfBasis& first = bases[0];
+    writer_.group(transfer_path::kSsdf);
+    writer_.attribute(transfer_path::kSsdf, "amplitude_rad", first.amplitude_rad);
+    writer_.group("/visibility/ssdf/basis");
+    const hsize_t texels = first.mean.size();
+    writer_.dataset(transfer_path::kMean, Hdf5Type::of<float>(), {bases.size(), texels}, 1,
+                    [&](hsize_t b, hsize_t) { return bases[b].mean.data(); });
+    write_eigen(transfer_path::kEigen, bases, {bases.size(), texels, extent(first.terms)});
+    writer_.array(transfer_path::kBasisId, {transfer_.basis_id.size()}, transfer_.basis_id);
+    write_coefficients(transfer_path::kCoefficients, transfer_.coefficients, first.terms);
+  }
+
+  void write_ladder() {
+    const std::vector<LadderBasis>& bases = transfer_.ladder_bases;
+    const LadderBasis& first = bases[0];
+    writer_.group(transfer_path::kLadder);
+    writer_.attribute(transfer_path::kLadder, "crossover", transfer_.ladder_crossover);
+    writer_.group("/visibility/ladder/basis");
+    const hsize_t levels = first.bandwidths.size();
+    const hsize_t texels = extent(first.resolution) * extent(first.resolution);
+    writer_.array(transfer_path::kLadderBandwidths, {levels}, first.bandwidths);
+    writer_.dataset(transfer_path::kLadderMean, Hdf5Type::of<float>(),
+                    {bases.size(), levels, texels}, 1,
+                    [&](hsize_t b, hsize_t) { return bases[b].mean.data(); });
+    write_eigen(transfer_path::kLadderEigen, bases,
+                {bases.size(), levels, texels, extent(first.terms)});
+    write_coefficients(transfer_path::kLadderCoefficients, transfer_.ladder_coefficients,
+                       first.terms);
+  }
+
+  template <class Basis>
+  void write_eigen(const char* name, const std::vector<Basis>& bases,
+                   const std::vector<hsize_t>& shape) {
+    const auto values = [&](hsize_t b) { return bases[b].eigen.data(); };
+    if (type_ == CoefficientType::float32)
+      writer_.dataset(name, Hdf5Type::of<float>(), shape, 1,
+                      [&](hsize_t b, hsize_t) { return values(b); });
+    else
+      write_halves(name, shape, 1, values);
+  }
+
+  void write_coefficients(const char* name, const std::vector<float>& coefficients, int terms) {
+    const std::vector<hsize_t> shape = {transfer_.vertex_count(), extent(terms)};
+    const auto values = [&](hsize_t v) { return coefficients.data() + v * extent(terms); };
+    if (type_ == CoefficientType::float32) {
+      writer_.array(name, shape, coefficients);
+    } else if (type_ == CoefficientType::float16) {
+      write_halves(name, shape, Hdf5Writer::chunk_rows(shape, sizeof(Eigen::half)), values);
+    } else {
+      const float step = int16_step(coefficients);
+      write_encoded<std::int16_t>(
+          writer_, name, shape, Hdf5Writer::chunk_rows(shape, sizeof(std::int16_t)), values,
+          [step](float value, size_t) {
+            // The last floats before infinity are a step further.
+            const long steps = std::clamp(std::lrint(value / step), -kMostSteps, kMostSteps);
+            return static_cast<std::int16_t>(steps);
+          });
+      writer_.attribute(name, kScaleFactor, step);
+    }
+  }
+
+  template <class Values>
+  void write_halves(const char* name, const std::vector<hsize_t>& shape, hsize_t rows_at_a_time,
+                    Values values) {
+    write_encoded<Eigen::half>(writer_, name, shape, rows_at_a_time, values,
+                               [&](float value, size_t index) {
+                                 const Eigen::half half(value);
+                                 if (!Eigen::half_impl::isfinite(half))
+                                   throw Error(ErrorKind::output, path_,
+                                               fmt::format("{}, value {}: {} is beyond float16, "
+                                                           "expected +-65504",
+                                                           name, index, value));
+                                 return half;
+                               });
+  }
+
+  /// The least power of two whose 32767-fold is the largest magnitude or more: quotients and
+  /// products are exact, and what was read can be written again without a change.
+  static float int16_step(const std::vector<float>& values) {
+    constexpr int kLeastExponent = -126;    // the least of a float that is not subnormal
+    constexpr int kGreatestExponent = 113;  // 32767 steps are still a float
+    float largest = 0;
+    for (const float value : values) largest = std::max(largest, std::abs(value));
+    if (largest == 0) return 1;
+    int exponent = 0;
+    if (std::frexp(largest / double{kMostSteps}, &exponent) == 0.5) --exponent;
+    return std::ldexp(1.0f, std::clamp(exponent, kLeastExponent, kGreatestExponent));
+  }
+
+  void write_provenance() {
+    const char* const object = transfer_path::kProvenance;
+    const Provenance& provenance = transfer_.provenance;
+    writer_.group(object);
+    writer_.attribute(object, "version", provenance.version);
+    writer_.attribute(object, "mesh_name", provenance.mesh_name);
+    writer_.attribute(object, "mesh_hash", provenance.mesh_hash);
+    writer_.attribute(object, "occluder_hash", provenance.occluder_hash);
+    writer_.attribute(object, "directions", std::int32_t{provenance.directions});
+    writer_.attribute(object, "coarsest", std::int32_t{provenance.coarsest});
+    writer_.attribute(object, "origin_offset", provenance.origin_offset);
+    writer_.attribute(object, "training_vertices", std::int32_t{provenance.training_vertices});
+    writer_.attribute(object, "rays", provenance.rays);
+    writer_.attribute(object, "residual_vertices", std::int32_t{provenance.residual_vertices});
+    writer_.attribute(object, "residual_held_out", std::uint8_t{provenance.residual_held_out});
+    writer_.attribute(object, "residual_rms_rad", provenance.residual_rms_rad);
+    writer_.attribute(object, "wrong_sign_fraction", provenance.wrong_sign_fraction);
+    write_errors(transfer_path::kSsdfErrors, provenance.ssdf_errors);
+    write_errors(transfer_path::kLadderErrors, provenance.ladder_errors);
+  }
+
+  void write_errors(const char* name, const std::vector<LobeError>& errors) {
+    writer_.dataset(name, Hdf5Type::of<double>(), {errors.size(), 2}, errors.data());
+  }
+
+  const Transfer& transfer_;
   const std::string& path_;
-  int compression_level_;
-  FileMemory memory_;  // outlives file_
-  Hdf5Id file_;
+  CoefficientType type_;
+  Hdf5Writer writer_;
 };
-
-void write_mesh(TransferWriter& writer, const Transfer& transfer) {
-  writer.group("/mesh");
-  writer.points(transfer_path::kPositions, transfer.positions);
-  writer.points(transfer_path::kNormals, transfer.normals);
-  writer.points(transfer_path::kTangents, transfer.tangents);
-  writer.dataset(transfer_path::kFileVertex, H5T_STD_U32LE, H5T_NATIVE_UINT32,
-                 {transfer.file_vertex.size()}, transfer.file_vertex.data());
-  writer.triangles(transfer_path::kTriangles, transfer.triangles);
-  writer.group("/occluders");
-  writer.points(transfer_path::kOccluderPositions, transfer.occluder_positions);
-  writer.triangles(transfer_path::kOccluderTriangles, transfer.occluder_triangles);
-}
-
-void write_bases(TransferWriter& writer, const std::vector<SsdfBasis>& bases) {
-  const hsize_t count = bases.size(), terms = static_cast<hsize_t>(bases[0].terms);
-  const hsize_t texels = bases[0].mean.size();
-  std::vector<float> mean, eigen;
-  mean.reserve(count * texels);
-  eigen.reserve(count * texels * terms);
-  for (const SsdfBasis& basis : bases) {
-    mean.insert(mean.end(), basis.mean.begin(), basis.mean.end());
-    eigen.insert(eigen.end(), basis.eigen.begin(), basis.eigen.end());
-  }
-  writer.dataset(transfer_path::kMean, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {count, texels},
-                 mean.data());
-  writer.dataset(transfer_path::kEigen, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {count, texels, terms},
-                 eigen.data());
-}
-
-void write_coefficients(TransferWriter& writer, const Transfer& transfer, CoefficientType type,
-                        const std::string& path) {
-  const std::vector<hsize_t> shape = {transfer.vertex_count(),
-                                      static_cast<hsize_t>(transfer.terms())};
-  if (type == CoefficientType::float32) {
-    writer.dataset(transfer_path::kCoefficients, H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, shape,
-                   transfer.coefficients.data());
-    return;
-  }
-  std::vector<Eigen::half> halves(transfer.coefficients.size());
-  for (size_t i = 0; i < halves.size(); ++i) {
-    halves[i] = Eigen::half(transfer.coefficients[i]);
-    if (!Eigen::half_impl::isfinite(halves[i]))
-      throw Error(ErrorKind::output, path,
-                  fmt::format("{}, value {}: {} is beyond float16, expected +-65504",
-                              transfer_path::kCoefficients, i, transfer.coefficients[i]));
-  }
-  const Hdf5Id half_type = hdf5_float16_type();
-  writer.dataset(transfer_path::kCoefficients, half_type.get(), half_type.get(), shape,
-                 halves.data());
-}
-
-void write_provenance(TransferWriter& writer, const Provenance& provenance) {
-  const char* const object = transfer_path::kProvenance;
-  writer.group(object);
-  writer.attribute(object, "version", provenance.version);
-  writer.attribute(object, "mesh_name", provenance.mesh_name);
-  writer.attribute(object, "mesh_hash", provenance.mesh_hash);
-  writer.attribute(object, "occluder_hash", provenance.occluder_hash);
-  writer.attribute(object, "directions", std::int32_t{provenance.directions});
-  writer.attribute(object, "training_vertices", std::int32_t{provenance.training_vertices});
-  writer.attribute(object, "rays", provenance.rays);
-  writer.attribute(object, "residual_rms_rad", provenance.residual_rms_rad);
-  writer.attribute(object, "wrong_sign_fraction", provenance.wrong_sign_fraction);
-}
 
 }  // namespace
 
@@ -261,19 +234,8 @@ void write_transfer(const Transfer& transfer, const std::string& path,
   check_transfer(transfer, ErrorKind::output, path);
   OutputFile file(path);  // first: a target that cannot be written is no reason to compress
   const Hdf5Session session;
-  TransferWriter writer(path, options.compression_level);
-  writer.attribute("/", "format", std::string(kTransferFormatName));
-  writer.attribute("/", "format_version", std::int32_t{kTransferFormatVersion});
-  write_mesh(writer, transfer);
-  writer.group("/visibility");
-  writer.group("/visibility/ssdf");
-  writer.group("/visibility/ssdf/basis");
-  write_bases(writer, transfer.bases);
-  write_coefficients(writer, transfer, options.coefficient_type, path);
-  writer.dataset(transfer_path::kBasisId, H5T_STD_U8LE, H5T_NATIVE_UINT8,
-                 {transfer.basis_id.size()}, transfer.basis_id.data());
-  write_provenance(writer, transfer.provenance);
-  file.write(writer.finish());
+  TransferWriter writer(transfer, path, options);
+  file.write(writer.write());
   file.commit();
 }
 
