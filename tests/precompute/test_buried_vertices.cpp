@@ -1,10 +1,13 @@
+#include <bit>
 #include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include "burnish/formats/mesh_assembly.h"
 #include "burnish/precompute/buried_vertices.h"
+#include "burnish/precompute/visibility_mask.h"
 #include "precompute/test_meshes.h"
 
 namespace burnish {
@@ -164,6 +167,38 @@ TEST(BuriedVertices, ABoxJustInTheFloorIsPierced) {
   EXPECT_EQ(found.inside.count, 0u);
   // Eight offsets above, as the ground of a scene file lies: all is well.
   EXPECT_EQ(find(make_box({0.1f, 0.05f, 0.5f + 0x1p-11f}, 0.5f), {floor}).count(), 0u);
+}
+
+TEST(BuriedVertices, WhatStandsOnTheAutomaticGroundDoesNotSeeThroughIt) {
+  SceneDescription scene;
+  scene.up = UpAxis::z;
+  scene.meshes.resize(1);
+  const TriangleMesh sphere = test::make_sphere({0, 0, 1}, 1, 16);
+  const DirectionTable table(64);
+  // What the lowest vertex sees of the hemisphere below it: no more than its horizon; and all of it
+  // from a ground at its own height, through which its rays' origin has gone.
+  for (const bool automatic : {true, false}) {
+    scene.ground.emplace();
+    if (!automatic) scene.ground->height = 0;
+    const TriangleMesh mesh = assemble_scene(scene, std::span(&sphere, 1)).receiver;
+    RayScene rays;
+    rays.add_mesh(mesh.positions, mesh.triangles);
+    rays.commit();
+    std::size_t lowest = 0;
+    for (std::size_t v = 0; v < sphere.positions.size(); ++v)
+      if (sphere.positions[v].z() < sphere.positions[lowest].z()) lowest = v;
+    VisibilityMask mask(64);
+    sample_visibility(rays, table, mesh.positions[lowest], mesh.normals[lowest], mask);
+    int visible = 0;
+    for (const std::uint64_t word : mask.bits) visible += std::popcount(word);
+    if (automatic) {
+      EXPECT_LE(visible,
+                126);  // texels that lie on the horizon but for rounding: along |u| + |v| = 1
+      EXPECT_EQ(find(mesh, {}).count(), 0u);
+    } else {
+      EXPECT_GT(visible, 1900);  // of 2048 directions; some graze the sphere's facets
+    }
+  }
 }
 
 TEST(BuriedVertices, CountsByPart) {
