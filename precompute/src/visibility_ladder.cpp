@@ -1,28 +1,22 @@
 #include "burnish/precompute/visibility_ladder.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <random>
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/QR>
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include "burnish/formats/error.h"
 #include "burnish/precompute/coverage.h"
-#include "visibility_ladder_convolution.h"
+#include "burnish/sphere/octahedral_map.h"
+#include "burnish/visibility/visibility_ladder.h"
 
-// Based on: halko2011randomized, Algorithm 4.4. The decomposition is of coverage C
-// [vertices][texels], in the inner product <a, G b> of a convolution G, so that images convolved
-// with the lobes of all levels never exist for all vertices at once. With U, s the left singular
-// vectors and values of C G^(1/2):
-//   D = C^T U / s         the coverage that goes with a unit of each coefficient (least squares)
-//   coefficients = C G D  since G^(1/2) D are the right singular vectors
-//   eigenimages = K D     of a level with the convolution K
+// PCA of visibility in spherical harmonics. With h a vertex's harmonics, less their mean, and G the
+// metric, diagonal: G^(1/2) h has the covariance G^(1/2) C G^(1/2) = V L V^T, and
+//   coefficients = V^T G^(1/2) h,   h = G^(-1/2) V coefficients.
+// Harmonics are sums over coverage, so that a product with coverage gives the coefficients.
 
 namespace burnish {
 namespace {
@@ -31,192 +25,132 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Bytes = std::span<const std::uint8_t>;
 
-constexpr Index kRowBlock = 128, kColumnBlock = 512;
+constexpr Index kTexels = static_cast<Index>(kLadderTexels);
+constexpr Index kRowBlock = 128;  // fixed, so that the number of threads changes nothing
+
+[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::input, "ladder", what); }
 
 void check_options(const LadderOptions& options) {
-  const auto refuse = [](const std::string& what) {
-    throw Error(ErrorKind::input, "ladder", what);
-  };
   if (options.terms < 1) refuse(fmt::format("terms is {}, expected at least 1", options.terms));
-  if (options.resolution < 8 || options.resolution > 256 ||
-      !std::has_single_bit(static_cast<unsigned>(options.resolution)))
-    refuse(fmt::format("resolution is {}, expected a power of two in 8..256", options.resolution));
-  if (options.bandwidths.empty()) refuse("has no bandwidth, expected at least one");
-  float last = 0;
-  for (const float bandwidth : options.bandwidths) {
-    if (!(bandwidth > last) || !std::isfinite(bandwidth))
-      refuse(fmt::format("bandwidth {} follows {}, expected positive, rising numbers", bandwidth,
-                         last));
-    last = bandwidth;
-  }
+  if (options.bands < 1 || options.bands > kMaxLadderBands)
+    refuse(fmt::format("bands is {}, expected 1..{}", options.bands, kMaxLadderBands));
   if (!(options.metric_bandwidth > 0) || !std::isfinite(options.metric_bandwidth))
     refuse(fmt::format("metric_bandwidth is {}, expected a positive number",
                        options.metric_bandwidth));
-  if (options.oversampling < 0 || options.iterations < 0)
-    refuse(fmt::format("oversampling is {} and iterations {}, expected none negative",
-                       options.oversampling, options.iterations));
 }
 
-// The coverage of some vertices as a matrix of centred rows, of which only blocks exist at a time.
-class CentredCoverage {
- public:
-  CentredCoverage(Bytes coverage, std::vector<std::uint32_t> rows, Index texels)
-      : coverage_(coverage), rows_(std::move(rows)), mean_(texels) {
-    for_blocks(texels, kColumnBlock, [&](Index first, Index count) {
-      Eigen::Array<std::uint64_t, 1, Eigen::Dynamic> sum(count);
-      sum.setZero();
-      for (Index row = 0; row < this->rows(); ++row)
-        sum += bytes(row, first, count).cast<std::uint64_t>();
-      mean_.segment(first, count) =
-          (sum.cast<double>() / (kFullCoverage * static_cast<double>(rows_.size()))).cast<float>();
-    });
+// What turns coverage / kFullCoverage into harmonics: [texels][bands^2], the harmonics at the
+// texels' centres times a texel's solid angle.
+RowMatrixf harmonics_of_texels(int bands) {
+  RowMatrixf result(kTexels, Index{bands} * bands);
+  constexpr float kTexel_sr = 4 * kPi<float> / static_cast<float>(kTexels);
+  for (Index i = 0; i < kTexels; ++i) {
+    const auto texel = static_cast<int>(i);
+    const Vector3f direction = octahedral_texel_direction<double>(texel % kLadderCoverageResolution,
+                                                                  texel / kLadderCoverageResolution,
+                                                                  kLadderCoverageResolution)
+                                   .cast<float>();
+    eval_harmonics(bands, direction,
+                   {result.row(i).data(), static_cast<std::size_t>(result.cols())});
+    result.row(i) *= kTexel_sr;
   }
-
-  Index rows() const { return static_cast<Index>(rows_.size()); }
-  const Eigen::RowVectorXf& mean() const { return mean_; }
-
-  RowMatrixf times(const RowMatrixf& right) const {
-    RowMatrixf product(rows(), right.cols());
-    for_blocks(rows(), kRowBlock, [&](Index first, Index count) {
-      product.middleRows(first, count).noalias() = block(first, count, 0, mean_.size()) * right;
-    });
-    return product;
-  }
-
-  RowMatrixf transposed_times(const RowMatrixf& right) const {
-    RowMatrixf product = RowMatrixf::Zero(mean_.size(), right.cols());
-    for_blocks(mean_.size(), kColumnBlock, [&](Index column, Index columns) {
-      for (Index first = 0; first < rows(); first += kRowBlock) {
-        const Index count = std::min(kRowBlock, rows() - first);
-        product.middleRows(column, columns).noalias() +=
-            block(first, count, column, columns).transpose() * right.middleRows(first, count);
-      }
-    });
-    return product;
-  }
-
- private:
-  template <class Body>
-  static void for_blocks(Index size, Index block, const Body& body) {
-    tbb::parallel_for(Index{0}, (size + block - 1) / block,
-                      [&](Index i) { body(i * block, std::min(block, size - i * block)); });
-  }
-
-  Eigen::Map<const Eigen::Array<std::uint8_t, 1, Eigen::Dynamic>> bytes(Index row, Index first,
-                                                                        Index count) const {
-    const auto vertex = static_cast<Index>(rows_[static_cast<std::size_t>(row)]);
-    return {coverage_.data() + vertex * mean_.size() + first, count};
-  }
-
-  RowMatrixf block(Index first, Index count, Index column, Index columns) const {
-    RowMatrixf result(count, columns);
-    for (Index i = 0; i < count; ++i)
-      result.row(i) = bytes(first + i, column, columns).cast<float>().matrix() / kFullCoverage -
-                      mean_.segment(column, columns);
-    return result;
-  }
-
-  Bytes coverage_;
-  std::vector<std::uint32_t> rows_;
-  Eigen::RowVectorXf mean_;
-};
-
-// Columns of +1 and -1: as good a start as Gaussian ones, and the same with every standard library.
-RowMatrixf random_start(Index rows, Index columns, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  RowMatrixf start(rows, columns);
-  for (Index i = 0; i < start.size(); ++i) start.data()[i] = random() >> 63 ? 1.0f : -1.0f;
-  return start;
-}
-
-RowMatrixf orthonormal_columns(const RowMatrixf& m) {
-  const Eigen::HouseholderQR<MatrixXd> qr(m.cast<double>());
-  const MatrixXd q = qr.householderQ() * MatrixXd::Identity(m.rows(), m.cols());
-  return q.cast<float>();
-}
-
-// D of the comment at the top; no column where no vertex deviates from the mean.
-RowMatrixf principal_coverage(const CentredCoverage& data, const SphericalConvolution& metric,
-                              const LadderOptions& options) {
-  const Index texels = data.mean().size(), smaller = std::min(data.rows(), texels);
-  const Index terms = std::min<Index>(options.terms, smaller);
-  const Index directions = std::min(terms + options.oversampling, smaller);
-  RowMatrixf left = random_start(data.rows(), directions, options.seed);
-  for (int i = 0; i <= options.iterations; ++i)
-    left = orthonormal_columns(data.times(metric.apply(data.transposed_times(left))));
-
-  const RowMatrixf image = data.transposed_times(left);
-  const MatrixXd inner = image.cast<double>().transpose() * metric.apply(image).cast<double>();
-  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen((inner + inner.transpose()) / 2);
-  const Eigen::VectorXd values = eigen.eigenvalues().reverse().cwiseMax(0.0);
-  // What rounding to float and to a byte leaves along a direction that the data do not have.
-  const double noise = 4 * double(std::numeric_limits<float>::epsilon()) *
-                       std::sqrt(values.sum() + static_cast<double>(data.rows()) *
-                                                    data.mean().cast<double>().squaredNorm());
-  Index count = 0;
-  while (count < terms && std::sqrt(values[count]) > noise) ++count;
-  MatrixXd columns =
-      image.cast<double>() * eigen.eigenvectors().rowwise().reverse().leftCols(count);
-  for (Index k = 0; k < count; ++k) {
-    Index largest = 0;
-    columns.col(k).cwiseAbs().maxCoeff(&largest);
-    columns.col(k) *= (columns(largest, k) < 0 ? -1 : 1) / std::sqrt(values[k]);
-  }
-  return columns.cast<float>();
-}
-
-// What one ladder is made of: the mean coverage, D and G D.
-struct Decomposition {
-  Eigen::RowVectorXf mean;
-  RowMatrixf principal;
-  RowMatrixf projection;
-};
-
-RowMatrixf with_columns(const RowMatrixf& matrix, Index columns) {
-  RowMatrixf result = RowMatrixf::Zero(matrix.rows(), columns);
-  result.leftCols(matrix.cols()) = matrix;
   return result;
 }
 
-VisibilityLadder assemble(const Decomposition& decomposition,
-                          std::span<const SphericalConvolution> levels,
-                          const LadderOptions& options, Index terms) {
-  VisibilityLadder ladder;
-  ladder.projection = with_columns(decomposition.projection, terms);
-  ladder.offset = decomposition.mean * ladder.projection;
-  LadderBasis& basis = ladder.basis;
-  basis.resolution = options.resolution;
-  basis.terms = static_cast<int>(terms);
-  basis.bandwidths = options.bandwidths;
-  const Index texels = decomposition.mean.size();
-  RowMatrixf images(texels, terms + 1);
-  images << decomposition.mean.transpose(), with_columns(decomposition.principal, terms);
-  for (const SphericalConvolution& level : levels) {
-    const RowMatrixf convolved = level.apply(images);
-    const Eigen::VectorXf mean = convolved.col(0);
-    const RowMatrixf eigen = convolved.rightCols(terms);
-    basis.mean.insert(basis.mean.end(), mean.data(), mean.data() + mean.size());
-    basis.eigen.insert(basis.eigen.end(), eigen.data(), eigen.data() + eigen.size());
-  }
-  return ladder;
+RowMatrixf shares(Bytes coverage) {
+  using ByteMatrix = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  const Index vertices = static_cast<Index>(coverage.size()) / kTexels;
+  return Eigen::Map<const ByteMatrix>(coverage.data(), vertices, kTexels).cast<float>() /
+         kFullCoverage;
 }
 
-std::vector<std::vector<std::uint32_t>> group_vertices(std::size_t vertices, Bytes basis_id,
-                                                       int bases) {
-  std::vector<std::uint32_t> all(vertices);
-  std::iota(all.begin(), all.end(), 0u);
-  if (basis_id.empty()) return {all};
-  std::vector<std::vector<std::uint32_t>> groups(static_cast<std::size_t>(bases));
-  for (const std::uint32_t vertex : all) {
-    if (basis_id[vertex] >= bases)
-      throw Error(ErrorKind::input, "ladder",
-                  fmt::format("vertex {} has basis {}, expected one below {}", vertex,
-                              basis_id[vertex], bases));
-    groups[basis_id[vertex]].push_back(vertex);
+RowMatrixf harmonics_of_vertices(Bytes coverage, const RowMatrixf& texels) {
+  const Index vertices = static_cast<Index>(coverage.size()) / kTexels;
+  RowMatrixf result(vertices, texels.cols());
+  tbb::parallel_for(Index{0}, (vertices + kRowBlock - 1) / kRowBlock, [&](Index block) {
+    const Index first = block * kRowBlock, count = std::min(kRowBlock, vertices - first);
+    result.middleRows(first, count).noalias() =
+        shares(coverage.subspan(static_cast<std::size_t>(first * kTexels),
+                                static_cast<std::size_t>(count * kTexels))) *
+        texels;
+  });
+  return result;
+}
+
+// Square root of the metric, harmonic by harmonic.
+Eigen::VectorXd metric_root(const LadderOptions& options) {
+  const LobeBands lobe = lobe_bands(options.metric_bandwidth);
+  Eigen::VectorXd root(Index{options.bands} * options.bands);
+  for (int l = 0; l < options.bands; ++l)
+    // Bands that the metric's lobe does not see keep a weight, so that it can be divided by.
+    root.segment(l * l, 2 * l + 1)
+        .setConstant(std::sqrt(std::max(double(lobe.factor[static_cast<std::size_t>(l)]), 1e-4)));
+  return root;
+}
+
+struct Decomposition {
+  Eigen::VectorXd mean;   // [harmonics]
+  MatrixXd eigenvectors;  // [harmonics][terms], the one of largest variance first
+};
+
+Decomposition decompose(const MatrixXd& harmonics, const Eigen::VectorXd& root, int terms) {
+  Decomposition result;
+  result.mean = harmonics.colwise().mean();
+  const MatrixXd centred = (harmonics.rowwise() - result.mean.transpose()) * root.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<MatrixXd> eigen(centred.transpose() * centred);
+  const Eigen::VectorXd values = eigen.eigenvalues().reverse().cwiseMax(0.0);
+  // What rounding to float leaves along a direction that the data do not have.
+  const double noise =
+      4 * double(std::numeric_limits<float>::epsilon()) *
+      std::sqrt(values.sum() + static_cast<double>(harmonics.rows()) * result.mean.squaredNorm());
+  const Index most = std::min<Index>(terms, values.size());
+  Index count = 0;
+  while (count < most && std::sqrt(values[count]) > noise) ++count;
+  result.eigenvectors = eigen.eigenvectors().rowwise().reverse().leftCols(count);
+  for (Index k = 0; k < count; ++k) {
+    Index largest = 0;
+    result.eigenvectors.col(k).cwiseAbs().maxCoeff(&largest);
+    if (result.eigenvectors(largest, k) < 0) result.eigenvectors.col(k) *= -1;
   }
-  for (auto& group : groups)
-    if (group.empty()) group = all;
+  return result;
+}
+
+// The vertices of each basis, as rows of double; all of them for a basis without any.
+std::vector<MatrixXd> group_rows(const RowMatrixf& harmonics, Bytes basis_id, int bases) {
+  std::vector<std::vector<Index>> rows(static_cast<std::size_t>(bases));
+  for (std::size_t vertex = 0; vertex < basis_id.size(); ++vertex) {
+    if (basis_id[vertex] >= bases)
+      refuse(fmt::format("vertex {} has basis {}, expected one below {}", vertex, basis_id[vertex],
+                         bases));
+    rows[basis_id[vertex]].push_back(static_cast<Index>(vertex));
+  }
+  std::vector<MatrixXd> groups;
+  for (const std::vector<Index>& group : rows) {
+    if (group.empty())
+      groups.push_back(harmonics.cast<double>());
+    else
+      groups.push_back(harmonics(group, Eigen::all).cast<double>());
+  }
   return groups;
+}
+
+VisibilityLadder assemble(const Decomposition& decomposition, const Eigen::VectorXd& root,
+                          const RowMatrixf& texels, Index terms, int bands) {
+  const Index given = decomposition.eigenvectors.cols();
+  MatrixXd forward = MatrixXd::Zero(root.size(), terms), back = forward;
+  forward.leftCols(given) = root.asDiagonal() * decomposition.eigenvectors;
+  back.leftCols(given) = root.cwiseInverse().asDiagonal() * decomposition.eigenvectors;
+
+  VisibilityLadder ladder;
+  ladder.projection = texels * forward.cast<float>();
+  ladder.offset = (decomposition.mean.transpose() * forward).cast<float>();
+  ladder.basis.resolution = bands;
+  ladder.basis.terms = static_cast<int>(terms);
+  const Eigen::VectorXf mean = decomposition.mean.cast<float>();
+  const RowMatrixf eigen = back.cast<float>();
+  ladder.basis.mean.assign(mean.data(), mean.data() + mean.size());
+  ladder.basis.eigen.assign(eigen.data(), eigen.data() + eigen.size());
+  return ladder;
 }
 
 }  // namespace
@@ -224,53 +158,69 @@ std::vector<std::vector<std::uint32_t>> group_vertices(std::size_t vertices, Byt
 std::vector<VisibilityLadder> train_ladders(Bytes coverage, const LadderOptions& options,
                                             Bytes basis_id, int bases) {
   check_options(options);
-  const Index texels = Index{options.resolution} * options.resolution;
-  const std::size_t vertices = coverage.size() / static_cast<std::size_t>(texels);
-  if (vertices == 0 || coverage.size() % static_cast<std::size_t>(texels) != 0)
-    throw Error(ErrorKind::input, "ladder",
-                fmt::format("coverage has {} texels, expected {} for each of one or more vertices",
-                            coverage.size(), texels));
+  const std::size_t vertices = coverage.size() / kLadderTexels;
+  if (vertices == 0 || coverage.size() % kLadderTexels != 0)
+    refuse(fmt::format("coverage has {} texels, expected {} for each of one or more vertices",
+                       coverage.size(), kLadderTexels));
   if (bases < 1 || (basis_id.empty() ? bases != 1 : basis_id.size() != vertices))
-    throw Error(ErrorKind::input, "ladder",
-                fmt::format("there are {} basis ids of {} bases for {} vertices, expected one a "
-                            "vertex, or none of one basis",
-                            basis_id.size(), bases, vertices));
+    refuse(
+        fmt::format("there are {} basis ids of {} bases for {} vertices, expected one a vertex, "
+                    "or none of one basis",
+                    basis_id.size(), bases, vertices));
 
-  std::vector<Decomposition> decompositions;
+  const RowMatrixf texels = harmonics_of_texels(options.bands);
+  const Eigen::VectorXd root = metric_root(options);
+  const std::vector<MatrixXd> groups =
+      group_rows(harmonics_of_vertices(coverage, texels), basis_id, bases);
+  std::vector<Decomposition> decompositions(groups.size());
+  tbb::parallel_for(std::size_t{0}, groups.size(), [&](std::size_t i) {
+    decompositions[i] = decompose(groups[i], root, options.terms);
+  });
   Index terms = 1;
-  {
-    const SphericalConvolution metric(options.resolution, double(options.metric_bandwidth));
-    for (auto& group : group_vertices(vertices, basis_id, bases)) {
-      const CentredCoverage data(coverage, std::move(group), texels);
-      const RowMatrixf principal = principal_coverage(data, metric, options);
-      terms = std::max(terms, principal.cols());
-      decompositions.push_back({data.mean(), principal, metric.apply(principal)});
-    }
-  }
-  std::vector<SphericalConvolution> levels;
-  for (const float bandwidth : options.bandwidths)
-    levels.emplace_back(options.resolution, double(bandwidth));
+  for (const Decomposition& one : decompositions) terms = std::max(terms, one.eigenvectors.cols());
   std::vector<VisibilityLadder> ladders;
-  for (const Decomposition& decomposition : decompositions)
-    ladders.push_back(assemble(decomposition, levels, options, terms));
+  for (const Decomposition& one : decompositions)
+    ladders.push_back(assemble(one, root, texels, terms, options.bands));
   return ladders;
 }
 
 void project_ladder(const VisibilityLadder& ladder, Bytes coverage, std::span<float> coefficients) {
-  const Index texels = ladder.projection.rows(), terms = ladder.projection.cols();
-  const Index vertices = static_cast<Index>(coverage.size()) / texels;
-  if (static_cast<Index>(coverage.size()) != vertices * texels ||
-      static_cast<Index>(coefficients.size()) != vertices * terms)
-    throw Error(ErrorKind::input, "ladder",
-                fmt::format("coverage has {} texels and there is room for {} coefficients, "
-                            "expected {} and {} a vertex",
-                            coverage.size(), coefficients.size(), texels, terms));
-  using ByteMatrix = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  const Eigen::Map<const ByteMatrix> bytes(coverage.data(), vertices, texels);
-  const RowMatrixf share = bytes.cast<float>() / kFullCoverage;
-  Eigen::Map<RowMatrixf> result(coefficients.data(), vertices, terms);
-  result.noalias() = share * ladder.projection;
+  const std::size_t vertices = coverage.size() / kLadderTexels;
+  const Index terms = ladder.projection.cols();
+  if (coverage.size() % kLadderTexels != 0 ||
+      coefficients.size() != vertices * static_cast<std::size_t>(terms))
+    refuse(
+        fmt::format("coverage has {} texels and there is room for {} coefficients, expected {} "
+                    "and {} a vertex",
+                    coverage.size(), coefficients.size(), kLadderTexels, terms));
+  Eigen::Map<RowMatrixf> result(coefficients.data(), static_cast<Index>(vertices), terms);
+  result.noalias() = shares(coverage) * ladder.projection;
   result.rowwise() -= ladder.offset;
+}
+
+float find_ladder_crossover(std::span<const LobeError> ssdf, std::span<const LobeError> ladder) {
+  if (ssdf.size() != ladder.size())
+    refuse(fmt::format("there are {} errors of the SSDF and {} of the ladder, expected as many",
+                       ssdf.size(), ladder.size()));
+  double last = 0, last_margin = 0, crossover = 0;
+  for (std::size_t i = 0; i < ssdf.size(); ++i) {
+    const double bandwidth = ssdf[i].bandwidth;
+    if (ladder[i].bandwidth != bandwidth || !(bandwidth > last))
+      refuse(fmt::format("error {} is of bandwidths {} and {}, expected equal ones that rise", i,
+                         bandwidth, ladder[i].bandwidth));
+    // Positive where the ladder is better. Errors of 0 count as the smallest that matters.
+    constexpr double kLeast = 1e-9;
+    const double margin = std::log(std::max(ssdf[i].relative_rms, kLeast)) -
+                          std::log(std::max(ladder[i].relative_rms, kLeast));
+    if (margin > 0) {
+      crossover = bandwidth;
+    } else if (last_margin > 0) {
+      crossover = last * std::pow(bandwidth / last, last_margin / (last_margin - margin));
+    }
+    last = bandwidth;
+    last_margin = margin;
+  }
+  return static_cast<float>(crossover);
 }
 
 }  // namespace burnish

@@ -60,7 +60,7 @@ SsdfBasis basis_of(const F& visible, int resolution) {
     for (const Vector3f& s : set) best = std::max(best, d.dot(s));
     return std::acos(std::min(best, 1.0f));
   };
-  SsdfBasis basis{resolution, 1, {}, std::vector<float>(resolution * resolution, 0.0f)};
+  SsdfBasis basis{resolution, 1, 0, {}, std::vector<float>(resolution * resolution, 0.0f)};
   for (int i = 0; i < resolution * resolution; ++i) {
     const Vector3f d =
         octahedral_texel_direction<float>(i % resolution, i / resolution, resolution);
@@ -156,7 +156,7 @@ TEST(ShadeDiffuse, BesideAWallIsNearTheTruthAndBeatsThePaper) {
 }
 
 TEST(ShadeDiffuse, FullyBlockedIsBlack) {
-  SsdfBasis basis{16, 1, std::vector<float>(256, -kPi<float>), std::vector<float>(256, 0)};
+  SsdfBasis basis{16, 1, 0, std::vector<float>(256, -kPi<float>), std::vector<float>(256, 0)};
   const float coefficient = 0;
   ShadingPoint point = upward_point();
   point.basis = &basis;
@@ -249,7 +249,7 @@ TEST(ShadeSpecular, WallHidesHalfOfALobeAtItsBoundary) {
 Transfer small_transfer(std::mt19937& random, int vertices, int terms) {
   std::normal_distribution<float> normal;
   Transfer t;
-  SsdfBasis basis{16, terms, std::vector<float>(256), std::vector<float>(256 * terms)};
+  SsdfBasis basis{16, terms, 0, std::vector<float>(256), std::vector<float>(256 * terms)};
   for (float& v : basis.mean) v = normal(random);
   for (float& v : basis.eigen) v = normal(random);
   t.bases.push_back(basis);

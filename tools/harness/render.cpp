@@ -21,6 +21,16 @@ Rgb interpolate_radiance(const std::vector<Rgb>& radiance, const SurfacePoint& p
   return sum;
 }
 
+/// The weighted mean of three vertices' coefficients; `of(vertex)` points to a vertex's.
+template <class Coefficients>
+void interpolate(const SurfacePoint& surface, const Coefficients& of, std::vector<float>& result) {
+  const float* a = of(surface.vertices[0]);
+  const float* b = of(surface.vertices[1]);
+  const float* c = of(surface.vertices[2]);
+  for (size_t i = 0; i < result.size(); ++i)
+    result[i] = surface.weight[0] * a[i] + surface.weight[1] * b[i] + surface.weight[2] * c[i];
+}
+
 /// Shades interpolated points; holds the interpolated coefficients between calls.
 class PixelShader {
  public:
@@ -31,42 +41,47 @@ class PixelShader {
         eye_(eye),
         lighting_(lighting),
         options_(options),
-        coefficients_(static_cast<size_t>(transfer_.terms())) {}
+        coefficients_(static_cast<size_t>(transfer_.terms())),
+        ladder_coefficients_(static_cast<size_t>(transfer_.ladder_terms())) {}
 
   Rgb operator()(const SurfacePoint& surface) {
     const Vector3f outgoing = outgoing_toward(eye_, surface.position, surface.frame.z);
     const Material& material = subject_.vertex_material(surface.vertices[0]);
-    ShadingPoint point;
-    point.position = surface.position;
-    point.frame = surface.frame;
-    if (transfer_.bases.empty()) return shade_point(point, outgoing, material, lighting_, options_);
     const auto& [a, b, c] = surface.vertices;
-    const std::uint8_t basis = transfer_.basis_id[a];
-    if (basis == transfer_.basis_id[b] && basis == transfer_.basis_id[c]) {
-      interpolate_coefficients(surface);
-      point.basis = &transfer_.bases[basis];
-      point.coefficients = coefficients_.data();
-      return shade_point(point, outgoing, material, lighting_, options_);
-    }
+    if (transfer_.bases.empty() || (transfer_.basis_id[a] == transfer_.basis_id[b] &&
+                                    transfer_.basis_id[a] == transfer_.basis_id[c]))
+      return shade_point(interpolated_point(surface), outgoing, material, lighting_, options_);
     // Coefficients of different bases cannot be mixed; the radiance they give can.
     Rgb sum = Rgb::Zero();
-    for (int i = 0; i < 3; ++i) {
-      const std::uint32_t vertex = surface.vertices[i];
-      point.basis = &transfer_.bases[transfer_.basis_id[vertex]];
-      point.coefficients = transfer_.vertex_coefficients(vertex);
-      sum += surface.weight[i] * shade_point(point, outgoing, material, lighting_, options_);
-    }
+    for (int i = 0; i < 3; ++i)
+      sum += surface.weight[i] * shade_point(point_like_vertex(surface, surface.vertices[i]),
+                                             outgoing, material, lighting_, options_);
     return sum;
   }
 
  private:
-  void interpolate_coefficients(const SurfacePoint& surface) {
-    const float* a = transfer_.vertex_coefficients(surface.vertices[0]);
-    const float* b = transfer_.vertex_coefficients(surface.vertices[1]);
-    const float* c = transfer_.vertex_coefficients(surface.vertices[2]);
-    for (size_t i = 0; i < coefficients_.size(); ++i)
-      coefficients_[i] =
-          surface.weight[0] * a[i] + surface.weight[1] * b[i] + surface.weight[2] * c[i];
+  /// The surface point with the visibility of a vertex.
+  ShadingPoint point_like_vertex(const SurfacePoint& surface, std::uint32_t vertex) const {
+    ShadingPoint point = vertex_shading_point(transfer_, vertex);
+    point.position = surface.position;
+    point.frame = surface.frame;
+    return point;
+  }
+
+  /// The surface point with interpolated coefficients, all three corners being of one basis.
+  ShadingPoint interpolated_point(const SurfacePoint& surface) {
+    ShadingPoint point = point_like_vertex(surface, surface.vertices[0]);
+    if (point.basis) {
+      const auto of = [&](std::uint32_t v) { return transfer_.vertex_coefficients(v); };
+      interpolate(surface, of, coefficients_);
+      point.coefficients = coefficients_.data();
+    }
+    if (point.ladder) {
+      const auto of = [&](std::uint32_t v) { return transfer_.vertex_ladder_coefficients(v); };
+      interpolate(surface, of, ladder_coefficients_);
+      point.ladder_coefficients = ladder_coefficients_.data();
+    }
+    return point;
   }
 
   const Subject& subject_;
@@ -74,7 +89,7 @@ class PixelShader {
   Vector3f eye_;
   const Lighting& lighting_;
   const ShadingOptions& options_;
-  std::vector<float> coefficients_;
+  std::vector<float> coefficients_, ladder_coefficients_;
 };
 
 }  // namespace

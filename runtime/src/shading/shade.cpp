@@ -11,6 +11,7 @@
 #include "burnish/sphere/mean_resultant.h"
 #include "burnish/sphere/spherical_warp.h"
 #include "burnish/visibility/ssdf.h"
+#include "burnish/visibility/visibility_ladder.h"
 
 // Based on: xu2013asg, section 6 (Eq. 29, 30), over the SSDF visibility of wang2009svbrdf. Where we
 // differ: the visible fraction takes the boundary's direction into account, and the diffuse cosine
@@ -21,10 +22,14 @@ namespace {
 /// What is seen of the surroundings of a point.
 class PointVisibility {
  public:
-  PointVisibility(const ShadingPoint& point, const ShadingOptions& options) : point_(point) {
+  PointVisibility(const ShadingPoint& point, const ShadingOptions& options, bool diffuse)
+      : point_(point) {
     if (!point.basis) return;
     const int baked = point.basis->terms;
     terms_ = options.terms > 0 ? std::min(options.terms, baked) : baked;
+    has_ladder_ = diffuse && options.cosine == CosineModel::horizon_normalised && options.ladder &&
+                  point.ladder && point.ladder_crossover > 0;
+    if (has_ladder_) harmonics_ = reconstruct_harmonics(*point.ladder, point.ladder_coefficients);
   }
 
   /// Signed distance to the nearest boundary. Without a bake, that is the horizon.
@@ -43,9 +48,25 @@ class PointVisibility {
 
   bool only_horizon() const { return point_.basis == nullptr; }
 
+  /// How much the ladder, and not the SSDF, tells of a lobe: 1 for wide lobes, 0 for narrow ones, a
+  /// smooth step over an octave either side of the crossover.
+  float ladder_weight(float bandwidth) const {
+    if (!has_ladder_) return 0;
+    const float octaves = std::log2(bandwidth / point_.ladder_crossover);
+    const float t = std::clamp((1 - octaves) / 2, 0.0f, 1.0f);
+    return t * t * (3 - 2 * t);
+  }
+
+  /// Visible fraction of a round lobe by the ladder.
+  float wide_fraction(const Vector3f& direction, const LobeBands& lobe) const {
+    return visible_fraction(harmonics_, direction, lobe);
+  }
+
  private:
   const ShadingPoint& point_;
   int terms_ = 0;
+  bool has_ladder_ = false;
+  VisibilityHarmonics harmonics_;
 };
 
 /// Where the product of a lobe and the clamped cosine peaks, and how wide it is there, as a lobe
@@ -92,6 +113,49 @@ AnisotropicGaussian<float> lobe_times_cosine(const AnisotropicGaussian<float>& l
   return result;
 }
 
+/// What is visible of a lobe, of what is above the horizon, by the ladder. A long lobe is read at
+/// three places along its long axis, the nodes of Gauss-Hermite quadrature: by one round lobe it
+/// errs by up to twice as much.
+float visible_share_by_ladder(const PointVisibility& visibility,
+                              const AnisotropicGaussian<float>& lobe, float wide, float narrow) {
+  constexpr float kLong = 2;  // ratio of bandwidths from which on three places are read
+  const Vector3f& axis = lobe.frame.z;
+  float seen = 0, above = 0;
+  const auto add = [&](const Vector3f& direction, float weight, float bandwidth) {
+    seen += weight * visibility.wide_fraction(direction, lobe_bands(bandwidth));
+    above +=
+        weight * visible_fraction_hemisphere(2 * bandwidth, visibility.horizon(direction).distance);
+  };
+  if (narrow < kLong * wide) {
+    add(axis, 1, std::sqrt(wide * narrow));
+  } else {
+    // Each part as wide as the lobe is narrow, but at least half as wide as it is long; their
+    // places have the rest of its variance.
+    const float part = std::min(narrow, 4 * wide);
+    const float tangent = std::sqrt(1.5f * (1 / wide - 1 / part));
+    const Vector3f offset =
+        tangent * (lobe.bandwidth_x < lobe.bandwidth_y ? lobe.frame.x : lobe.frame.y);
+    const float bandwidth = std::sqrt(part * narrow);
+    add(axis, 2.0f / 3, bandwidth);
+    add((axis + offset).normalized(), 1.0f / 6, bandwidth);
+    add((axis - offset).normalized(), 1.0f / 6, bandwidth);
+  }
+  return seen < above ? seen / above : 1.0f;
+}
+
+/// The same by the SSDF.
+float visible_share_by_ssdf(const PointVisibility& visibility, const ShadingOptions& options,
+                            const AnisotropicGaussian<float>& lobe) {
+  const SsdfSample boundary = visibility.lookup(lobe.frame.z);
+  const SsdfSample horizon = visibility.horizon(lobe.frame.z);
+  const float seen =
+      visible_fraction(options.visibility, lobe, boundary.distance, boundary.gradient);
+  const float above =
+      visible_fraction(options.visibility, lobe, horizon.distance, horizon.gradient);
+  // Both vanish together where the lobe is far below the horizon; there the integral does, too.
+  return seen < above ? seen / above : 1.0f;
+}
+
 /// Integral of the lobe (unit amplitude) times visibility times the clamped cosine.
 float diffuse_integral(const PreparedLobe& light, const ShadingPoint& point,
                        const PointVisibility& visibility, const ShadingOptions& options) {
@@ -107,13 +171,14 @@ float diffuse_integral(const PreparedLobe& light, const ShadingPoint& point,
       light.integral * mean_clamped_cosine(light.moments, light.lobe.frame.to_local(normal));
   if (unshadowed <= 0 || visibility.only_horizon()) return unshadowed;
   const AnisotropicGaussian<float> lit = lobe_times_cosine(light.lobe, normal);
-  const SsdfSample boundary = visibility.lookup(lit.frame.z);
-  const SsdfSample horizon = visibility.horizon(lit.frame.z);
-  const float seen =
-      visible_fraction(options.visibility, lit, boundary.distance, boundary.gradient);
-  const float above = visible_fraction(options.visibility, lit, horizon.distance, horizon.gradient);
-  // Both vanish together where the lobe is far below the horizon; there the integral does, too.
-  return unshadowed * (seen < above ? seen / above : 1.0f);
+  // The curvature, without the ASG's smooth term, which the ladder's lobes do not have.
+  const float wide = std::min(lit.bandwidth_x, lit.bandwidth_y) + 0.5f;
+  const float narrow = std::max(lit.bandwidth_x, lit.bandwidth_y) + 0.5f;
+  const float weight = visibility.ladder_weight(std::sqrt(wide * narrow));
+  float share = 0;
+  if (weight > 0) share += weight * visible_share_by_ladder(visibility, lit, wide, narrow);
+  if (weight < 1) share += (1 - weight) * visible_share_by_ssdf(visibility, options, lit);
+  return unshadowed * share;
 }
 
 /// A sphere as the lobe it covers from a point: the spherical Gaussian of the same mean cosine and
@@ -201,9 +266,10 @@ PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options
 Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing, const Material& material,
                 const Lighting& lighting, const ShadingOptions& options) noexcept {
   if (outgoing.dot(point.frame.z) <= 0) return Rgb::Zero();
-  const PointVisibility visibility(point, options);
+  const bool diffuse = (material.diffuse > 0).any();
+  const PointVisibility visibility(point, options, diffuse);
   Rgb irradiance = Rgb::Zero();
-  if ((material.diffuse > 0).any()) {
+  if (diffuse) {
     for (const PreparedLobe& light : lighting.lights->lobes)
       irradiance += light.color * diffuse_integral(light, point, visibility, options);
     for (const SphereLight& sphere : lighting.lights->spheres) {
@@ -224,6 +290,10 @@ ShadingPoint vertex_shading_point(const Transfer& transfer, size_t vertex) noexc
   if (transfer.bases.empty()) return point;
   point.basis = &transfer.bases[transfer.basis_id[vertex]];
   point.coefficients = transfer.vertex_coefficients(vertex);
+  point.ladder = transfer.vertex_ladder_basis(vertex);
+  if (!point.ladder) return point;
+  point.ladder_coefficients = transfer.vertex_ladder_coefficients(vertex);
+  point.ladder_crossover = transfer.ladder_crossover;
   return point;
 }
 

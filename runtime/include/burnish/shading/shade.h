@@ -27,6 +27,9 @@ struct ShadingOptions {
   AsgIntegral integral = AsgIntegral::exact;
   int terms = 0;              ///< PCA terms used, 1..baked; 0: all that were baked
   int environment_taps = 32;  ///< at most, along the long axis of a specular lobe, 1..64
+  /// The horizon-normalised diffuse term of lobes wider than the transfer's crossover sees through
+  /// the visibility ladder, where one was baked. False: through the SSDF, as the papers do.
+  bool ladder = true;
 };
 
 /// A lobe of light with what shading needs of its shape: prepared once per change of the lights.
@@ -59,6 +62,9 @@ struct ShadingPoint {
   Frame<float> frame;                   ///< x tangent, z shading normal
   const SsdfBasis* basis = nullptr;     ///< null: nothing occludes but the horizon
   const float* coefficients = nullptr;  ///< [basis->terms]
+  const LadderBasis* ladder = nullptr;  ///< null: none; read only where there is a basis, too
+  const float* ladder_coefficients = nullptr;  ///< [ladder->terms]
+  float ladder_crossover = 0;                  ///< as in Transfer
 };
 
 /// Outgoing radiance of a point toward a unit direction, W sr^-1 m^-2 up to the lights' own scale.

@@ -1,54 +1,48 @@
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "burnish/shading/transfer.h"
-#include "burnish/sphere/sg_half_space.h"
 
-/// What wide lobes see: a fraction stored for a few bandwidths, and interpolated linearly in the
-/// bandwidth's logarithm (docs/maths.md, "Visibility ladder").
+/// What wide lobes see. A point's visibility is kept as real spherical harmonics of low degree, in
+/// which a lobe of any bandwidth is a factor for each band: the ladder has no rungs, and a lobe's
+/// bandwidth is continuous (docs/maths.md, "Visibility ladder").
+///
+/// Harmonics are orthonormal, without the Condon-Shortley phase: band l holds first the l + 1
+/// proportional to cos(m azimuth), m = 0..l, then the l proportional to sin(m azimuth), m = 1..l;
+/// it starts at number l^2. Polar axis z.
 namespace burnish {
 
-/// Two neighbouring levels of a ladder and the weight of the second. A bandwidth beyond the first
-/// or the last level counts as that level's.
-struct LadderLevels {
-  int first = 0, second = 0;
-  float weight = 0;
+/// The most bands of a ladder.
+inline constexpr int kMaxLadderBands = 16;
+
+/// Values at a unit direction of the harmonics of bands 0..bands - 1, `bands` 1..kMaxLadderBands:
+/// [bands^2].
+void eval_harmonics(int bands, const Vector3f& direction, std::span<float> values) noexcept;
+
+/// The factors by which a normalised lobe exp(2 bandwidth (cos - 1)) dampens each band: ratios of
+/// modified spherical Bessel functions, 1 for band 0.
+struct LobeBands {
+  std::array<float, kMaxLadderBands> factor = {};
+  int bands = 0;  ///< from which on they are below 1e-4, or kMaxLadderBands
+};
+LobeBands lobe_bands(float bandwidth) noexcept;
+
+/// A point's visibility, ready for many lobes; each band's rows padded with zeros.
+struct VisibilityHarmonics {
+  using Rows = std::array<std::array<float, kMaxLadderBands>, kMaxLadderBands>;
+  alignas(16) Rows cosine = {}, sine = {};  ///< [band][m]
+  int bands = 0;
 };
 
-inline LadderLevels ladder_levels(const LadderBasis& basis, float bandwidth) {
-  const auto& levels = basis.bandwidths;
-  const auto above = std::upper_bound(levels.begin(), levels.end(), bandwidth);
-  const int second = static_cast<int>(above - levels.begin());
-  if (second == 0) return {};
-  if (above == levels.end()) return {second - 1, second - 1, 0};
-  const float low = *(above - 1);
-  return {second - 1, second, std::log(bandwidth / low) / std::log(*above / low)};
-}
+/// mean + eigen * coefficients.
+VisibilityHarmonics reconstruct_harmonics(const LadderBasis& basis,
+                                          const float* coefficients) noexcept;
 
-/// The fraction, 0..1, of a lobe exp(2 bandwidth (v . direction - 1)) that is visible: mean + eigen
-/// * coefficients of the two levels next to the bandwidth, bilinear in the direction.
-float lookup_ladder(const LadderBasis& basis, const float* coefficients, const Vector3f& direction,
-                    const LadderLevels& levels) noexcept;
-
-inline float lookup_ladder(const LadderBasis& basis, const float* coefficients,
-                           const Vector3f& direction, float bandwidth) noexcept {
-  return lookup_ladder(basis, coefficients, direction, ladder_levels(basis, bandwidth));
-}
-
-/// The same fraction where nothing occludes but the horizon, whose distance from the direction is
-/// given (radians), interpolated between the same two levels: the ladder's own error between them
-/// cancels in the ratio.
-inline float ladder_horizon_fraction(const LadderBasis& basis, float horizon_distance,
-                                     const LadderLevels& levels) {
-  const auto fraction = [&](int level) {
-    return visible_fraction_hemisphere(2 * basis.bandwidths[static_cast<size_t>(level)],
-                                       horizon_distance);
-  };
-  const float first = fraction(levels.first);
-  if (levels.weight == 0) return first;
-  return first + levels.weight * (fraction(levels.second) - first);
-}
+/// The fraction, 0..1, of a lobe around a unit direction that is visible.
+float visible_fraction(const VisibilityHarmonics& visibility, const Vector3f& direction,
+                       const LobeBands& lobe) noexcept;
 
 }  // namespace burnish
