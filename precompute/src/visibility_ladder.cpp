@@ -198,29 +198,4 @@ void project_ladder(const VisibilityLadder& ladder, Bytes coverage, std::span<fl
   result.rowwise() -= ladder.offset;
 }
 
-float find_ladder_crossover(std::span<const LobeError> ssdf, std::span<const LobeError> ladder) {
-  if (ssdf.size() != ladder.size())
-    refuse(fmt::format("there are {} errors of the SSDF and {} of the ladder, expected as many",
-                       ssdf.size(), ladder.size()));
-  double last = 0, last_margin = 0, crossover = 0;
-  for (std::size_t i = 0; i < ssdf.size(); ++i) {
-    const double bandwidth = ssdf[i].bandwidth;
-    if (ladder[i].bandwidth != bandwidth || !(bandwidth > last))
-      refuse(fmt::format("error {} is of bandwidths {} and {}, expected equal ones that rise", i,
-                         bandwidth, ladder[i].bandwidth));
-    // Positive where the ladder is better. Errors of 0 count as the smallest that matters.
-    constexpr double kLeast = 1e-9;
-    const double margin = std::log(std::max(ssdf[i].relative_rms, kLeast)) -
-                          std::log(std::max(ladder[i].relative_rms, kLeast));
-    if (margin > 0) {
-      crossover = bandwidth;
-    } else if (last_margin > 0) {
-      crossover = last * std::pow(bandwidth / last, last_margin / (last_margin - margin));
-    }
-    last = bandwidth;
-    last_margin = margin;
-  }
-  return static_cast<float>(crossover);
-}
-
 }  // namespace burnish

@@ -260,6 +260,44 @@ TEST(VisibilityLadder, RefusesWhatItCannotTrainOn) {
   EXPECT_THROW(project_ladder(train_ladders(coverage, {})[0], coverage, coefficients), Error);
 }
 
+TEST(LadderMeasure, FindsTheErrorThatWasPutIn) {
+  std::mt19937 random(kSeed);
+  constexpr int kDirections = 128;
+  const DirectionTable table(kDirections);
+  std::vector<VisibilityMask> masks;
+  Bytes coverage;
+  for (const Vector3d& normal : random_normals(20, random)) {
+    VisibilityMask mask(kDirections);
+    for (int y = 0; y < kDirections; ++y)
+      for (int x = 0; x < kDirections; ++x)
+        if (table.direction(x, y).dot(normal.cast<float>()) > 0) mask.set_visible(x, y);
+    Bytes own(kLadderTexels);
+    measure_coverage(mask, kLadderCoverageResolution, own);
+    coverage.insert(coverage.end(), own.begin(), own.end());
+    masks.push_back(std::move(mask));
+  }
+  VisibilityLadder ladder = train_ladders(coverage, {.terms = 19})[0];
+  ASSERT_EQ(ladder.basis.terms, 19);  // all that twenty vertices have
+  const std::vector<float> coefficients = project(ladder, coverage);
+  const float bandwidths[] = {0.5f, 2};
+  const LadderSamples samples{{&ladder.basis, 1}, {}, coefficients, masks};
+  // 64^2 texels in place of 128^2.
+  for (const LobeError& error : measure_ladder(samples, bandwidths))
+    EXPECT_LT(error.relative_rms, 2e-3) << error.bandwidth;
+  // A constant of .05 too much everywhere, of fractions whose mean square over all directions lies
+  // between 1/4 (their mean's) and 1/2 (of a lobe without width).
+  ladder.basis.mean[0] += 0.05f * std::sqrt(4 * kPi<float>);
+  for (const LobeError& error : measure_ladder(samples, bandwidths)) {
+    EXPECT_GT(error.relative_rms, 0.05 / std::sqrt(0.5) - 0.01) << error.bandwidth;
+    EXPECT_LT(error.relative_rms, 0.05 / std::sqrt(0.25) + 0.01) << error.bandwidth;
+  }
+  EXPECT_THROW(measure_ladder({}, bandwidths), Error);
+  EXPECT_THROW(measure_ladder(samples, bandwidths, 0), Error);
+  EXPECT_THROW(measure_ladder({{&ladder.basis, 1}, {}, {}, masks}, bandwidths), Error);
+  std::vector<VisibilityMask> coarse(20, VisibilityMask(64));
+  EXPECT_THROW(measure_ladder({{&ladder.basis, 1}, {}, coefficients, coarse}, bandwidths), Error);
+}
+
 TEST(LadderCrossover, LiesWhereTheErrorsCross) {
   const std::vector<LobeError> ssdf = {{1, .4}, {4, .2}, {16, .1}, {64, .05}};
   const auto ladder = [](double a, double b, double c, double d) {

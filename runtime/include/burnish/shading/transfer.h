@@ -29,15 +29,15 @@ struct SsdfBasis {
   std::vector<float> eigen;  ///< [resolution^2][terms]
 };
 
-/// Mean and eigenimages of one basis of the visibility ladder, on octahedral maps (world frame):
-/// at each level the fraction (0..1) of an isotropic lobe that is visible, around each direction.
-/// All levels share a vertex's coefficients.
+/// Mean and eigenvectors of one basis of the visibility ladder, as spherical harmonics of the
+/// visibility (world frame; their order: visibility_ladder.h). A lobe's bandwidth is a factor a
+/// band, so that all lobes share a vertex's coefficients.
 struct LadderBasis {
-  int resolution = 0;             ///< texels along an edge of each level's map
-  int terms = 0;                  ///< number of eigenimages
-  std::vector<float> bandwidths;  ///< [levels] of the lobes, rising (an SG's sharpness is twice it)
-  std::vector<float> mean;        ///< [levels][resolution^2]
-  std::vector<float> eigen;       ///< [levels][resolution^2][terms]
+  int resolution = 0;             ///< bands of harmonics, degrees 0..resolution - 1
+  int terms = 0;                  ///< number of eigenvectors
+  std::vector<float> bandwidths;  ///< not used by harmonics, which serve all bandwidths
+  std::vector<float> mean;        ///< [resolution^2]
+  std::vector<float> eigen;       ///< [resolution^2][terms]
 };
 
 /// Relative RMS error of the visible fraction of isotropic lobes of one bandwidth.
