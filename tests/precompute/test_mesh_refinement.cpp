@@ -52,7 +52,6 @@ TEST(Density, MatchesSingleRays) {
   std::map<std::uint32_t, float> worst;
   for (const DensityReport::Triangle& t : report.worst) worst[t.triangle] = t.difference;
   std::uint64_t exceeding = 0;
-  double area = 0;
   for (std::uint32_t t = 0; t < fine.triangles.size(); ++t) {
     const Triangle& c = fine.triangles[t];
     const double largest =
@@ -66,7 +65,6 @@ TEST(Density, MatchesSingleRays) {
       EXPECT_NEAR(worst[t], largest, slack);
     }
     exceeding += largest > 0.15;
-    area += largest > 0.15 ? 1 : 0;
   }
   EXPECT_GT(exceeding, 5u);
   EXPECT_GE(report.exceeding, exceeding);
