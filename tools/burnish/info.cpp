@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,8 @@
 #include "burnish/formats/transfer_file.h"
 #include "commands.h"
 #include "common/options.h"
+#include "common/program.h"
+#include "harness/transfer_picture.h"
 
 namespace burnish::tools {
 namespace {
@@ -21,6 +24,7 @@ using Json = nlohmann::ordered_json;
 struct Options {
   std::string file;
   bool json = false;
+  std::string png;
   MeshReadOptions reading;
 };
 
@@ -78,26 +82,65 @@ Json image_info(const std::string& path) {
   return info;
 }
 
-Json transfer_info(const std::string& path) {
-  const Transfer transfer = read_transfer(path);
-  const Provenance& made = transfer.provenance;
-  Json info = {{"kind", "transfer"}, {"file", path}, {"format", "HDF5"}};
-  info["file_bytes"] = std::filesystem::file_size(path);
-  info["vertices"] = transfer.vertex_count();
-  info["triangles"] = transfer.triangles.size();
-  info["occluder_triangles"] = transfer.occluder_triangles.size();
+Json lobe_errors_json(const std::vector<LobeError>& errors) {
+  Json list = Json::array();
+  for (const LobeError& error : errors)
+    list.push_back({{"bandwidth", error.bandwidth}, {"relative_rms", error.relative_rms}});
+  return list;
+}
+
+Json parts_json(const std::vector<MeshPart>& parts) {
+  Json list = Json::array();
+  for (const MeshPart& part : parts)
+    list.push_back(
+        {{"name", part.name}, {"vertices", part.vertices}, {"triangles", part.triangles}});
+  return list;
+}
+
+void add_visibility(const Transfer& transfer, Json& info) {
   info["bases"] = transfer.bases.size();
+  std::vector<std::size_t> vertices(transfer.bases.size());
+  for (const std::uint8_t id : transfer.basis_id) ++vertices[id];
+  info["basis_vertices"] = vertices;
   info["resolution"] = transfer.bases.empty() ? 0 : transfer.bases.front().resolution;
   info["terms"] = transfer.terms();
+  info["amplitude_rad"] = transfer.bases.empty() ? 0 : transfer.bases.front().amplitude_rad;
+  const bool has_ladder = !transfer.ladder_bases.empty();
+  info["ladder_bases"] = transfer.ladder_bases.size();
+  info["ladder_bands"] = has_ladder ? transfer.ladder_bases.front().resolution : 0;
+  info["ladder_terms"] = transfer.ladder_terms();
+  info["ladder_crossover"] = transfer.ladder_crossover;
+}
+
+void add_provenance(const Provenance& made, Json& info) {
   info["version"] = made.version;
   info["mesh_name"] = made.mesh_name;
   info["mesh_hash"] = made.mesh_hash;
   info["occluder_hash"] = made.occluder_hash;
   info["directions"] = made.directions;
+  info["coarsest"] = made.coarsest;
+  info["origin_offset"] = made.origin_offset;
   info["training_vertices"] = made.training_vertices;
   info["rays"] = made.rays;
+  info["residual_vertices"] = made.residual_vertices;
+  info["residual_held_out"] = made.residual_held_out;
   info["residual_rms_rad"] = made.residual_rms_rad;
   info["wrong_sign_fraction"] = made.wrong_sign_fraction;
+  info["ssdf_errors"] = lobe_errors_json(made.ssdf_errors);
+  info["ladder_errors"] = lobe_errors_json(made.ladder_errors);
+}
+
+Json transfer_info(const std::string& path, const std::string& png) {
+  const Transfer transfer = read_transfer(path);
+  Json info = {{"kind", "transfer"}, {"file", path}, {"format", "HDF5"}};
+  info["file_bytes"] = std::filesystem::file_size(path);
+  info["vertices"] = transfer.vertex_count();
+  info["triangles"] = transfer.triangles.size();
+  info["occluder_triangles"] = transfer.occluder_triangles.size();
+  info["parts"] = parts_json(transfer.parts);
+  add_visibility(transfer, info);
+  add_provenance(transfer.provenance, info);
+  if (!png.empty()) write_png(draw_transfer(transfer), png);
   return info;
 }
 
@@ -127,12 +170,21 @@ bool starts_as_image(const std::string& path) {
 
 Json file_info(const Options& options) {
   const std::string extension = lower_extension(options.file);
-  if (is_hdf5_file(options.file) || extension == ".h5") return transfer_info(options.file);
+  if (is_hdf5_file(options.file) || extension == ".h5")
+    return transfer_info(options.file, options.png);
+  if (!options.png.empty())
+    throw UsageError(fmt::format("--png: found {}, expected a transfer", options.file));
   if (starts_as_image(options.file) || extension == ".exr" || extension == ".hdr" ||
       extension == ".pic")
     return image_info(options.file);
   if (extension == ".json") return lights_info(options.file);
   return mesh_info(options.file, options.reading);
+}
+
+/// A field's name with spaces.
+std::string words(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
 }
 
 /// A value as a person reads it: no quotes, lists with commas.
@@ -141,8 +193,13 @@ std::string value_text(const Json& value) {
   if (value.is_null()) return "-";
   if (value.is_number_float()) return fmt::format("{:g}", value.get<double>());
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
-  if (!value.is_array()) return value.dump();
   std::string text;
+  if (value.is_object()) {
+    for (const auto& [key, field] : value.items())
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", words(key), value_text(field));
+    return text;
+  }
+  if (!value.is_array()) return value.dump();
   for (const Json& element : value) text += (text.empty() ? "" : ", ") + value_text(element);
   return text;
 }
@@ -150,16 +207,20 @@ std::string value_text(const Json& value) {
 void print_text(const Json& info) {
   for (const auto& [key, value] : info.items()) {
     if (key == "notes") continue;
-    std::string label = key;
-    for (char& c : label)
-      if (c == '_') c = ' ';
-    fmt::print("{:<22}{}\n", label, value_text(value));
+    std::string label = words(key);
+    // A line for each object of a list.
+    const bool is_table = value.is_array() && !value.empty() && value.front().is_object();
+    for (const Json& line : is_table ? value : Json::array({value})) {
+      fmt::print("{:<22}{}\n", label, value_text(line));
+      label.clear();
+    }
   }
   if (info.contains("notes"))
     for (const Json& note : info["notes"]) fmt::print("note: {}\n", note.get<std::string>());
 }
 
 void run(const Options& options) {
+  require_writable(std::vector{options.png});
   const Json info = file_info(options);
   if (options.json)
     fmt::print("{}\n", info.dump(2, ' ', false, Json::error_handler_t::replace));
@@ -176,6 +237,12 @@ std::function<void()> declare_info(CLI::App& app) {
            "(required)")
       ->required();
   app.add_flag("--json", options->json, "print JSON, with the same fields (default: text)");
+  add_file(app, "--png", "FILE.png", options->png,
+           "of a transfer: draw octahedral maps, blue visible, red hidden. First row: the SSDFs of "
+           "eight vertices; then of each basis its mean and its leading eigen-SSDFs; then of each "
+           "ladder what lobes of bandwidth 1, 2, 4, ..., 128 see on average, and how that changes "
+           "along its leading eigenvector. At most eight bases",
+           ".png");
   return [options] { run(*options); };
 }
 
