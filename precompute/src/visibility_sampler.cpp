@@ -52,6 +52,23 @@ struct Tiles {
 
 void clear(BitGrid& grid) { std::fill(grid.bits.begin(), grid.bits.end(), 0); }
 
+// Texels of the finest map.
+struct Square {
+  int x, y, side;
+};
+
+// Cosines of a tile's directions to the normal; returns the lowest that is above zero, or 2.
+float lowest_above(const DirectionTile& tile, const Vector3f& normal, float* cosine) {
+  for (int i = 0; i < 16; ++i)
+    cosine[i] = tile.x[i] * normal.x() + tile.y[i] * normal.y() + tile.z[i] * normal.z();
+  float lowest[4] = {2, 2, 2, 2};
+  for (int i = 0; i < 16; ++i) {
+    const float above = cosine[i] > 0 ? cosine[i] : 2.0f;
+    lowest[i % 4] = above < lowest[i % 4] ? above : lowest[i % 4];
+  }
+  return std::min(std::min(lowest[0], lowest[1]), std::min(lowest[2], lowest[3]));
+}
+
 // Calls body(x, y) for the set bits, block by block, so that those called together are close.
 template <class Body>
 void for_each_set(const BitGrid& grid, const Body& body) {
@@ -87,8 +104,9 @@ struct VisibilitySampler::Scratch::State {
   Tiles tiles;
   std::vector<Level> levels;  // coarser than the tiles' texels, the last of a cell a tile
   int coarsest;
-  std::vector<float> cosine;                  // of the blocks
-  std::vector<unsigned char> uneven;          // blocks that the horizon crosses
+  std::vector<float> cosine;       // of the blocks
+  std::vector<unsigned char> low;  // blocks with texels at the horizon
+  std::vector<int> low_blocks;
   std::vector<Word> rows;                     // two rows of neighbours
   std::vector<unsigned char> changed, dirty;  // rows of the level in work
 
@@ -130,6 +148,15 @@ VisibilitySampler::VisibilitySampler(const RayScene& scene, const DirectionTable
       blocks_.x.push_back(mean.x());
       blocks_.y.push_back(mean.y());
       blocks_.z.push_back(mean.z());
+      for (int i = 0; i < kBlock * (kBlock - 1); ++i) {
+        const int along = i % (kBlock - 1), across = i / (kBlock - 1);
+        pitch_ = std::max(pitch_, (finest.direction(x + along + 1, y + across) -
+                                   finest.direction(x + along, y + across))
+                                      .norm());
+        pitch_ = std::max(pitch_, (finest.direction(x + across, y + along + 1) -
+                                   finest.direction(x + across, y + along))
+                                      .norm());
+      }
       // |n . d - n . mean| <= |d - mean|, and some float roundings.
       blocks_.margin.push_back(radius + 1e-5f);
     }
@@ -156,10 +183,9 @@ class VisibilitySampler::Pass {
 
  private:
   Word block_above(int x, int y) const;
-  bool crosses_horizon(int x, int y, int size) const;
   void cast(Level& level);
   void add(Level& level, int x, int y, int texel_x, int texel_y);
-  void add_lowest(Level& level, int x, int y);
+  void add_lowest(Level& level, int x, int y, const Square& square, float limit);
   void flush(Level& level);
   void cast(Tiles& tiles);
   template <class Body>
@@ -183,7 +209,8 @@ bool VisibilitySampler::Pass::find_horizon() {
   const Blocks& blocks = sampler_.blocks_;
   const std::size_t count = blocks.x.size();
   state_.cosine.resize(count);
-  state_.uneven.assign(count, 0);
+  state_.low.assign(count, 0);
+  state_.low_blocks.clear();
   for (std::size_t i = 0; i < count; ++i)
     state_.cosine[i] =
         blocks.x[i] * normal_.x() + blocks.y[i] * normal_.y() + blocks.z[i] * normal_.z();
@@ -201,7 +228,8 @@ bool VisibilitySampler::Pass::find_horizon() {
           bits = ~Word{0};
         else if (cosine > -blocks.margin[i])
           bits = block_above(x, y);
-        state_.uneven[i] = bits != 0 && bits != ~Word{0};
+        state_.low[i] = bits != 0 && cosine < blocks.margin[i] + sampler_.pitch_;
+        if (state_.low[i]) state_.low_blocks.push_back(static_cast<int>(i));
         any |= bits != 0;
         for (int r = 0; r < kBlock; ++r)
           rows[r] |= (bits >> (kBlock * r) & 0xff) << (kBlock * column);
@@ -227,36 +255,26 @@ Word VisibilitySampler::Pass::block_above(int x, int y) const {
 
 void VisibilitySampler::Pass::sample_coarsest(Level& level) {
   for (BitGrid* grid : {&level.visible, &level.occluded, &level.exact}) clear(*grid);
-  for (int y = 0; y < level.todo.size; y += 4)
-    for (int x = 0; x < level.todo.size; x += 4)
-      for (int i = 0; i < 16; ++i) {
-        const int cell_x = x + i % 4, cell_y = y + i / 4;
-        const int texel_x = cell_x * level.cell + level.sample;
-        const int texel_y = cell_y * level.cell + level.sample;
-        if (above_.get(texel_x, texel_y)) {
-          level.exact.set(cell_x, cell_y);
-          add(level, cell_x, cell_y, texel_x, texel_y);
+  // Tile by tile of cells: first their samples, then what is low, block by block.
+  const int size = level.todo.size;
+  for (int y = 0; y < size; y += 4)
+    for (int x = 0; x < size; x += 4)
+      for (int v = y; v < y + 4; ++v)
+        for (int u = x; u < x + 4; ++u) {
+          const int texel_x = u * level.cell + level.sample,
+                    texel_y = v * level.cell + level.sample;
+          if (!above_.get(texel_x, texel_y)) continue;
+          level.exact.set(u, v);
+          add(level, u, v, texel_x, texel_y);
         }
-        if (crosses_horizon(cell_x * level.cell, cell_y * level.cell, level.cell))
-          add_lowest(level, cell_x, cell_y);
-      }
+  const int step = std::min(level.cell, kBlock), across = above_.size / kBlock;
+  for (const int block : state_.low_blocks) {
+    const int first_x = block % across * kBlock, first_y = block / across * kBlock;
+    for (int v = first_y; v < first_y + kBlock; v += step)
+      for (int u = first_x; u < first_x + kBlock; u += step)
+        add_lowest(level, u / level.cell, v / level.cell, {u, v, step}, sampler_.pitch_);
+  }
   flush(level);
-}
-
-// Whether some texels of a cell are above the horizon and some are not.
-bool VisibilitySampler::Pass::crosses_horizon(int x, int y, int size) const {
-  const auto block = static_cast<std::size_t>(y / kBlock * (above_.size / kBlock) + x / kBlock);
-  if (size <= kBlock && !state_.uneven[block]) return false;
-  const int width = std::min(size, 64);
-  const Word mask = width == 64 ? ~Word{0} : (Word{1} << width) - 1;
-  Word any = 0, all = mask;
-  for (int k = y; k < y + size; ++k)
-    for (int i = x; i < x + size; i += width) {
-      const Word bits = above_.row(k)[i / 64] >> (i % 64) & mask;
-      any |= bits;
-      all &= bits;
-    }
-  return any != 0 && all != mask;
 }
 
 void VisibilitySampler::Pass::refine(const Level& coarse, Level& fine) {
@@ -282,32 +300,38 @@ void VisibilitySampler::Pass::cast(Level& level) {
     level.cast.set(x, y);
     state_.changed[static_cast<std::size_t>(y)] = 1;
     const int texel_x = x * level.cell + level.sample, texel_y = y * level.cell + level.sample;
-    if (above_.get(texel_x, texel_y)) {
+    const bool above = above_.get(texel_x, texel_y);
+    if (above) {
       level.exact.set(x, y);
       add(level, x, y, texel_x, texel_y);
-    } else {
-      add_lowest(level, x, y);
     }
+    add_lowest(level, x, y, {x * level.cell, y * level.cell, level.cell},
+               above ? sampler_.pitch_ : 2);
   });
   flush(level);
 }
 
-// Adds the cell's texel nearest to the horizon, if any is above it: what stands low over a surface
-// is met there.
-void VisibilitySampler::Pass::add_lowest(Level& level, int x, int y) {
-  const int size = level.cell;
-  float lowest = 2;
-  int best_x = 0, best_y = 0;
-  for (int v = y * size; v < (y + 1) * size; ++v)
-    for (int u = x * size; u < (x + 1) * size; ++u) {
-      if (!above_.get(u, v)) continue;
-      const float cosine = sampler_.finest_.direction(u, v).dot(normal_);
-      if (cosine >= lowest) continue;
-      lowest = cosine;
-      best_x = u;
-      best_y = v;
+// Adds, for a cell, the texel of a square in it that is least above the horizon, if its cosine is
+// below `limit`: with the pitch of the texels, if the square touches the horizon. Thin slits and
+// obstacles lie along it more often than anywhere else.
+void VisibilitySampler::Pass::add_lowest(Level& level, int x, int y, const Square& square,
+                                         float limit) {
+  const int across = above_.size / kBlock;
+  float lowest = limit;
+  int lowest_x = 0, lowest_y = 0;
+  for (int v = square.y; v < square.y + square.side; v += 4)
+    for (int u = square.x; u < square.x + square.side; u += 4) {
+      if (!state_.low[static_cast<std::size_t>(v / kBlock * across + u / kBlock)]) continue;
+      const auto tile = static_cast<std::size_t>(v / 4 * (above_.size / 4) + u / 4);
+      float cosine[16];
+      const float in_tile = lowest_above(sampler_.finest_.tiles()[tile], normal_, cosine);
+      if (in_tile >= lowest) continue;
+      lowest = in_tile;
+      const int lane = static_cast<int>(std::find(cosine, cosine + 16, in_tile) - cosine);
+      lowest_x = u + lane % 4;
+      lowest_y = v + lane / 4;
     }
-  if (lowest < 2) add(level, x, y, best_x, best_y);
+  if (lowest < limit) add(level, x, y, lowest_x, lowest_y);
 }
 
 void VisibilitySampler::Pass::add(Level& level, int x, int y, int texel_x, int texel_y) {

@@ -22,8 +22,9 @@ namespace burnish {
 ///   found is followed to its end, however thin it gets.
 /// - What can be missed is what lies wholly between the coarsest samples: a feature narrower than
 ///   sqrt(4 pi) / coarsest rad, which no coarser sample met.
-/// - Below the horizon everything is occluded and nothing is cast. The horizon itself costs one ray
-///   for each coarsest cell that it crosses, and no refinement.
+/// - Below the horizon everything is occluded and nothing is cast. Each block of 8 x 8 texels that
+///   the horizon touches costs one ray, just above the horizon; where nothing occludes there, the
+///   horizon causes no refinement.
 /// - A vertex with nothing above its tangent plane costs no ray (RayScene::hemisphere_is_empty).
 class VisibilitySampler {
  public:
@@ -69,6 +70,7 @@ class VisibilitySampler {
   const DirectionTable& finest_;
   int coarsest_;
   Blocks blocks_;
+  float pitch_ = 0;  // largest distance of neighbouring directions
 };
 
 /// How a sampler's result compares with casting every ray.
