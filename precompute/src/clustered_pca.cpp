@@ -163,9 +163,11 @@ int choose_bases(const RowMatrixf& rows, Index terms, int most,
   RowMatrixf held_out(rows.rows() / 8, rows.cols());
   for (Index i = 0, t = 0, h = 0; i < rows.rows(); ++i)
     (i % 8 == 7 ? held_out.row(h++) : trained.row(t++)) = rows.row(i);
+  // Below a thousandth of the vectors' own size there is nothing left to gain.
+  const double enough = 1e-6 * held_out.cast<double>().squaredNorm();
   int chosen = 1;
   double least = std::numeric_limits<double>::infinity();
-  for (int bases = 1; bases <= most; bases *= 2) {
+  for (int bases = 1; bases <= most && least > enough; bases *= 2) {
     Assignment assignment;
     const double squared =
         assign(form_groups(trained, terms, bases, options, assignment), held_out).squared_residual;

@@ -19,8 +19,10 @@ double exact_visible_fraction(const VisibilityMask& mask, const Vector3f& direct
 /// Dials of measure_lobe_visibility.
 struct LobeVisibilityOptions {
   std::vector<float> bandwidths = {8, 32, 128, 512};  ///< > 0
-  int directions = 32;                                ///< a vertex, uniform over the sphere
-  std::uint64_t seed = 20090101;                      ///< of the directions
+  /// Directions: a random one in each texel of a strata x strata octahedral map, of which each
+  /// vertex takes every fourth.
+  int strata = 16;
+  std::uint64_t seed = 20090101;  ///< of the directions
 };
 
 /// How far visibility through compressed SSDFs is from the truth. Relative RMS errors are
@@ -28,8 +30,8 @@ struct LobeVisibilityOptions {
 struct LobeVisibilityErrors {
   std::vector<LobeError> compression;  ///< truth: the fraction through the uncompressed SSDF
   std::vector<LobeError> whole;        ///< truth: the integral of the lobe over the mask
-  double rms_rad = 0;                  ///< of SSDF texels
-  double wrong_sign_fraction = 0;      ///< of SSDF texels; a distance of 0 has no sign
+  double rms_rad = 0;  ///< of SSDF texels, held to +-pi/2: lobes see no difference beyond
+  double wrong_sign_fraction = 0;  ///< of SSDF texels; a distance of 0 has no sign
 };
 
 /// SSDFs of vertices, compressed and not, and what they were made from.
