@@ -26,7 +26,8 @@ struct DensityReport {
   std::vector<Triangle> worst;  ///< by falling difference, then rising number
 };
 
-/// Triangles whose corners differ by more than this are worth a note.
+/// Triangles whose corners differ by more than this are worth a note: none of a mesh whose shadow
+/// boundaries are resolved, a quarter of the area of one of large polygons in a building.
 inline constexpr double kDensityThreshold = 0.2;
 
 /// Looks at every triangle of `mesh`, whose rays leave `origin_offset` (world units; 0:
@@ -41,8 +42,7 @@ inline constexpr double kDefaultMinEdge = 1.0 / 512;
 
 /// Dials of a refinement.
 struct RefinementOptions {
-  double max_difference =
-      0.1;              ///< edges whose ends (or end and middle) differ more are halved, > 0
+  double max_difference = 0.1;  ///< > 0; edges whose ends, or end and middle, differ more: halved
   double min_edge = 0;  ///< world units: no edge is halved into shorter ones; 0: kDefaultMinEdge
   std::uint64_t max_vertices = 10'000'000;  ///< of the refined mesh
   double origin_offset = 0;                 ///< world units; 0: scene.origin_offset()
@@ -50,9 +50,8 @@ struct RefinementOptions {
 
 struct RefinementReport : SubdivisionReport {
   std::uint64_t rays = 0;
-  std::uint64_t left = 0;  ///< edges that still differ: too short, or no vertices left
-  bool out_of_vertices =
-      false;  ///< max_vertices was reached: the edges that differ most went first
+  std::uint64_t left = 0;        ///< edges that still differ: too short, or no vertices left
+  bool out_of_vertices = false;  ///< max_vertices did not suffice: what differs most went first
 };
 
 /// Halves the edges across which visibility changes, again and again: shadow boundaries need
