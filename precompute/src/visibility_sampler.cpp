@@ -283,7 +283,6 @@ void VisibilitySampler::Pass::refine(const Level& coarse, Level& fine) {
   place_coarse_samples(coarse.exact, coarse.parity(), fine.exact);
   for (std::size_t i = 0; i < fine.todo.bits.size(); ++i) {
     fine.todo.bits[i] = fine.visible.bits[i] & fine.occluded.bits[i];
-    fine.exact.bits[i] &= ~fine.todo.bits[i];
     fine.cast.bits[i] = fine.exact.bits[i];
   }
   state_.changed.assign(static_cast<std::size_t>(fine.todo.size), 1);
