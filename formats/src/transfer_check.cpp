@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "burnish/visibility/visibility_ladder.h"
 #include "transfer_layout.h"
 
 namespace burnish {
@@ -110,26 +111,22 @@ struct TransferChecker {
     }
   }
 
-  /// Means and eigenimages of `maps` maps in one basis.
+  /// Mean and eigenvectors of a basis whose resolution was checked.
   template <class Basis>
-  void check_images(const char* mean_path, const char* eigen_path, const Basis& basis, size_t maps,
-                    float low, float high) const {
-    const auto resolution = static_cast<unsigned>(std::max(basis.resolution, 0));
-    if (basis.resolution < kMinSsdfResolution || basis.resolution > kMaxSsdfResolution ||
-        !std::has_single_bit(resolution))
-      fail(mean_path, fmt::format("resolution {}, expected a power of two in {}..{}",
-                                  basis.resolution, kMinSsdfResolution, kMaxSsdfResolution));
+  void check_basis(const char* mean_path, const char* eigen_path, const Basis& basis,
+                   float most) const {
     if (basis.terms < 1 || basis.terms > kMaxTerms)
       fail(eigen_path, fmt::format("{} terms, expected 1..{}", basis.terms, kMaxTerms));
-    const size_t values = maps * resolution * resolution;
+    const size_t values =
+        static_cast<size_t>(basis.resolution) * static_cast<size_t>(basis.resolution);
     check_count(mean_path, basis.mean.size(), values);
     check_count(eigen_path, basis.eigen.size(), values * static_cast<size_t>(basis.terms));
     check_finite(mean_path, basis.mean);
     check_finite(eigen_path, basis.eigen);
     for (size_t i = 0; i < values; ++i)
-      if (basis.mean[i] < low - kRangeTolerance || basis.mean[i] > high + kRangeTolerance)
+      if (std::abs(basis.mean[i]) > most + kRangeTolerance)
         fail(fmt::format("{}, value {}", mean_path, i),
-             fmt::format("{}, expected {}..{}", basis.mean[i], low, high));
+             fmt::format("{}, expected -{}..{}", basis.mean[i], most, most));
   }
 
   void check_ssdf_basis(const SsdfBasis& basis) const {
@@ -137,8 +134,13 @@ struct TransferChecker {
     if (!(basis.amplitude_rad >= 0) || !std::isfinite(basis.amplitude_rad))
       fail(fmt::format("{}, attribute amplitude_rad", transfer_path::kSsdf),
            fmt::format("{}, expected 0 or more", basis.amplitude_rad));
-    const float most = basis.amplitude_rad > 0 ? 1 : kPi<float>;
-    check_images(transfer_path::kMean, transfer_path::kEigen, basis, 1, -most, most);
+    if (basis.resolution < kMinSsdfResolution || basis.resolution > kMaxSsdfResolution ||
+        !std::has_single_bit(static_cast<unsigned>(basis.resolution)))
+      fail(transfer_path::kMean,
+           fmt::format("resolution {}, expected a power of two in {}..{}", basis.resolution,
+                       kMinSsdfResolution, kMaxSsdfResolution));
+    check_basis(transfer_path::kMean, transfer_path::kEigen, basis,
+                basis.amplitude_rad > 0 ? 1 : kPi<float>);
     if (basis.resolution != first.resolution || basis.terms != first.terms ||
         basis.amplitude_rad != first.amplitude_rad)
       fail(transfer_path::kEigen, "the bases differ in resolution, terms or amplitude");
@@ -160,15 +162,19 @@ struct TransferChecker {
     check_finite(transfer_path::kCoefficients, transfer.coefficients);
   }
 
-  void check_bandwidths(const std::vector<float>& bandwidths) const {
-    if (bandwidths.empty() || bandwidths.size() > kMaxLadderLevels)
-      fail(transfer_path::kLadderBandwidths,
-           fmt::format("{} levels, expected 1..{}", bandwidths.size(), kMaxLadderLevels));
-    check_finite(transfer_path::kLadderBandwidths, bandwidths);
-    for (size_t i = 0; i < bandwidths.size(); ++i)
-      if (!(bandwidths[i] > (i == 0 ? 0 : bandwidths[i - 1])))
-        fail(fmt::format("{}, value {}", transfer_path::kLadderBandwidths, i),
-             fmt::format("{}, expected positive numbers that rise", bandwidths[i]));
+  void check_ladder_basis(const LadderBasis& basis) const {
+    const LadderBasis& first = transfer.ladder_bases[0];
+    if (basis.resolution < 1 || basis.resolution > kMaxLadderBands)
+      fail(transfer_path::kLadderMean,
+           fmt::format("{} bands, expected 1..{}", basis.resolution, kMaxLadderBands));
+    if (!basis.bandwidths.empty())
+      fail(transfer_path::kLadder,
+           fmt::format("{} bandwidths, expected none", basis.bandwidths.size()));
+    // The norm of a visibility of 1 everywhere bounds each of its harmonics.
+    check_basis(transfer_path::kLadderMean, transfer_path::kLadderEigen, basis,
+                std::sqrt(4 * kPi<float>));
+    if (basis.resolution != first.resolution || basis.terms != first.terms)
+      fail(transfer_path::kLadderEigen, "the bases differ in bands or terms");
   }
 
   void check_ladder() const {
@@ -179,14 +185,7 @@ struct TransferChecker {
       fail(transfer_path::kLadderMean,
            fmt::format("{} bases, expected none, one, or one for each of the SSDF's {}",
                        bases.size(), transfer.bases.size()));
-    for (const LadderBasis& basis : bases) {
-      check_bandwidths(basis.bandwidths);
-      check_images(transfer_path::kLadderMean, transfer_path::kLadderEigen, basis,
-                   basis.bandwidths.size(), 0, 1);
-      if (basis.resolution != bases[0].resolution || basis.terms != bases[0].terms ||
-          basis.bandwidths != bases[0].bandwidths)
-        fail(transfer_path::kLadderEigen, "the bases differ in resolution, terms or bandwidths");
-    }
+    for (const LadderBasis& basis : bases) check_ladder_basis(basis);
     const size_t vertices = bases.empty() ? 0 : transfer.vertex_count();
     check_count(transfer_path::kLadderCoefficients, transfer.ladder_coefficients.size(),
                 vertices * static_cast<size_t>(transfer.ladder_terms()));

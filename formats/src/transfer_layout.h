@@ -29,7 +29,6 @@ inline constexpr const char* kEigen = "/visibility/ssdf/basis/eigen";
 inline constexpr const char* kCoefficients = "/visibility/ssdf/coefficients";
 inline constexpr const char* kBasisId = "/visibility/ssdf/basis_id";
 inline constexpr const char* kLadder = "/visibility/ladder";
-inline constexpr const char* kLadderBandwidths = "/visibility/ladder/basis/bandwidths";
 inline constexpr const char* kLadderMean = "/visibility/ladder/basis/mean";
 inline constexpr const char* kLadderEigen = "/visibility/ladder/basis/eigen";
 inline constexpr const char* kLadderCoefficients = "/visibility/ladder/coefficients";

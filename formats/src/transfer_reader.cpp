@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "burnish/visibility/visibility_ladder.h"
 #include "file_bytes.h"
 #include "hdf5_reader.h"
 #include "transfer_layout.h"
@@ -87,13 +88,12 @@ class TransferReader {
     return count;
   }
 
-  /// How many texels lie along an edge of a map.
-  int resolution_of(const char* name, hsize_t texels) const {
-    const auto resolution = static_cast<hsize_t>(std::llround(std::sqrt(double(texels))));
-    constexpr hsize_t kMaxTexels = hsize_t{kMaxSsdfResolution} * kMaxSsdfResolution;
-    if (texels > kMaxTexels || resolution * resolution != texels)
-      reader_.fail(name, fmt::format("{} texels, expected a square up to {}", texels, kMaxTexels));
-    return static_cast<int>(resolution);
+  /// The root of a count that must be a square.
+  int edge_of(const char* name, const char* what, hsize_t count, int most) const {
+    const auto edge = static_cast<hsize_t>(std::llround(std::sqrt(double(count))));
+    if (edge > static_cast<hsize_t>(most) || edge * edge != count)
+      reader_.fail(name, fmt::format("{} {}, expected a square up to {}^2", count, what, most));
+    return static_cast<int>(edge);
   }
 
   void check_extent(const char* name, const char* what, hsize_t count, int most) const {
@@ -132,11 +132,6 @@ class TransferReader {
     }
   }
 
-  Hdf5Dataset open_eigen(const char* name, const std::vector<hsize_t>& shape) const {
-    if (version_ == 1) return reader_.open(name, {&float32_}, shape);
-    return reader_.open(name, {&float32_, &float16_}, shape);
-  }
-
   std::vector<float> read_coefficients(const char* name, int terms) const {
     const std::vector<hsize_t> shape = {vertices_, static_cast<hsize_t>(terms)};
     const Hdf5Dataset dataset = version_ == 1
@@ -165,9 +160,11 @@ class TransferReader {
     const Hdf5Dataset mean = reader_.open(transfer_path::kMean, {&float32_}, {count, kAnyExtent});
     check_extent(transfer_path::kMean, "bases", mean.rows(), kMaxBases);
     SsdfBasis basis;
-    basis.resolution = resolution_of(transfer_path::kMean, mean.shape[1]);
+    basis.resolution = edge_of(transfer_path::kMean, "texels", mean.shape[1], kMaxSsdfResolution);
+    const std::vector<hsize_t> shape = {mean.rows(), mean.shape[1], kAnyExtent};
     const Hdf5Dataset eigen =
-        open_eigen(transfer_path::kEigen, {mean.rows(), mean.shape[1], kAnyExtent});
+        version_ == 1 ? reader_.open(transfer_path::kEigen, {&float32_}, shape)
+                      : reader_.open(transfer_path::kEigen, {&float32_, &float16_}, shape);
     check_extent(transfer_path::kEigen, "terms", eigen.shape[2], kMaxTerms);
     basis.terms = static_cast<int>(eigen.shape[2]);
     if (version_ >= 2)
@@ -179,17 +176,15 @@ class TransferReader {
   }
 
   void read_ladder(hsize_t count) {
-    LadderBasis basis;
-    basis.bandwidths = reader_.read<float>(transfer_path::kLadderBandwidths, {kAnyExtent});
-    const hsize_t levels = basis.bandwidths.size();
-    check_extent(transfer_path::kLadderBandwidths, "levels", levels, kMaxLadderLevels);
     const Hdf5Dataset mean =
-        reader_.open(transfer_path::kLadderMean, {&float32_}, {count, levels, kAnyExtent});
-    basis.resolution = resolution_of(transfer_path::kLadderMean, mean.shape[2]);
+        reader_.open(transfer_path::kLadderMean, {&float32_}, {count, kAnyExtent});
+    LadderBasis basis;
+    basis.resolution =
+        edge_of(transfer_path::kLadderMean, "harmonics", mean.shape[1], kMaxLadderBands);
     const Hdf5Dataset eigen =
-        open_eigen(transfer_path::kLadderEigen, {count, levels, mean.shape[2], kAnyExtent});
-    check_extent(transfer_path::kLadderEigen, "terms", eigen.shape[3], kMaxTerms);
-    basis.terms = static_cast<int>(eigen.shape[3]);
+        reader_.open(transfer_path::kLadderEigen, {&float32_}, {count, mean.shape[1], kAnyExtent});
+    check_extent(transfer_path::kLadderEigen, "terms", eigen.shape[2], kMaxTerms);
+    basis.terms = static_cast<int>(eigen.shape[2]);
     transfer_.ladder_bases.assign(count, basis);
     read_images(mean, eigen, transfer_.ladder_bases);
     transfer_.ladder_coefficients =

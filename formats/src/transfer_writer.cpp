@@ -109,9 +109,14 @@ class TransferWriter {
     writer_.attribute(transfer_path::kSsdf, "amplitude_rad", first.amplitude_rad);
     writer_.group("/visibility/ssdf/basis");
     const hsize_t texels = first.mean.size();
-    writer_.dataset(transfer_path::kMean, Hdf5Type::of<float>(), {bases.size(), texels}, 1,
-                    [&](hsize_t b, hsize_t) { return bases[b].mean.data(); });
-    write_eigen(transfer_path::kEigen, bases, {bases.size(), texels, extent(first.terms)});
+    write_rows(transfer_path::kMean, {bases.size(), texels},
+               [&](hsize_t b) { return bases[b].mean.data(); });
+    const std::vector<hsize_t> shape = {bases.size(), texels, extent(first.terms)};
+    const auto eigen = [&](hsize_t b) { return bases[b].eigen.data(); };
+    if (type_ == CoefficientType::float32)
+      write_rows(transfer_path::kEigen, shape, eigen);
+    else
+      write_halves(transfer_path::kEigen, shape, 1, eigen);
     writer_.array(transfer_path::kBasisId, {transfer_.basis_id.size()}, transfer_.basis_id);
     write_coefficients(transfer_path::kCoefficients, transfer_.coefficients, first.terms);
   }
@@ -122,27 +127,20 @@ class TransferWriter {
     writer_.group(transfer_path::kLadder);
     writer_.attribute(transfer_path::kLadder, "crossover", transfer_.ladder_crossover);
     writer_.group("/visibility/ladder/basis");
-    const hsize_t levels = first.bandwidths.size();
-    const hsize_t texels = extent(first.resolution) * extent(first.resolution);
-    writer_.array(transfer_path::kLadderBandwidths, {levels}, first.bandwidths);
-    writer_.dataset(transfer_path::kLadderMean, Hdf5Type::of<float>(),
-                    {bases.size(), levels, texels}, 1,
-                    [&](hsize_t b, hsize_t) { return bases[b].mean.data(); });
-    write_eigen(transfer_path::kLadderEigen, bases,
-                {bases.size(), levels, texels, extent(first.terms)});
+    const hsize_t harmonics = first.mean.size();
+    write_rows(transfer_path::kLadderMean, {bases.size(), harmonics},
+               [&](hsize_t b) { return bases[b].mean.data(); });
+    write_rows(transfer_path::kLadderEigen, {bases.size(), harmonics, extent(first.terms)},
+               [&](hsize_t b) { return bases[b].eigen.data(); });
     write_coefficients(transfer_path::kLadderCoefficients, transfer_.ladder_coefficients,
                        first.terms);
   }
 
-  template <class Basis>
-  void write_eigen(const char* name, const std::vector<Basis>& bases,
-                   const std::vector<hsize_t>& shape) {
-    const auto values = [&](hsize_t b) { return bases[b].eigen.data(); };
-    if (type_ == CoefficientType::float32)
-      writer_.dataset(name, Hdf5Type::of<float>(), shape, 1,
-                      [&](hsize_t b, hsize_t) { return values(b); });
-    else
-      write_halves(name, shape, 1, values);
+  /// Floats as they are; `values(row)` gives one along the first dimension.
+  template <class Values>
+  void write_rows(const char* name, const std::vector<hsize_t>& shape, Values values) {
+    writer_.dataset(name, Hdf5Type::of<float>(), shape, 1,
+                    [&](hsize_t row, hsize_t) { return values(row); });
   }
 
   void write_coefficients(const char* name, const std::vector<float>& coefficients, int terms) {

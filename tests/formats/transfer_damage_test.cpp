@@ -38,7 +38,7 @@ TEST(DamagedTransfer, RejectsWhatIsMissing) {
                            "/visibility/ssdf/basis_id",
                            "/visibility/ladder",
                            "/visibility/ladder/basis",
-                           "/visibility/ladder/basis/bandwidths",
+
                            "/visibility/ladder/basis/mean",
                            "/visibility/ladder/basis/eigen",
                            "/visibility/ladder/coefficients",

@@ -16,7 +16,7 @@ struct TransferSize {
   size_t vertices = 40, triangles = 30, occluder_vertices = 5, occluder_triangles = 4;
   int bases = 2, resolution = 8, terms = 6;
   float amplitude_rad = 0;
-  int ladder_bases = 0, ladder_resolution = 4, ladder_terms = 5, levels = 3;
+  int ladder_bases = 0, ladder_bands = 4, ladder_terms = 5;
   size_t parts = 0;
 };
 
@@ -91,16 +91,12 @@ inline void cut_into_parts(Transfer& transfer, size_t parts) {
 }
 
 inline std::vector<LadderBasis> random_ladder(std::mt19937& random, const TransferSize& size) {
-  const auto values = static_cast<size_t>(size.levels * size.ladder_resolution) *
-                      static_cast<size_t>(size.ladder_resolution);
+  const auto values = static_cast<size_t>(size.ladder_bands * size.ladder_bands);
   std::vector<LadderBasis> bases(static_cast<size_t>(size.ladder_bases));
   for (LadderBasis& basis : bases) {
-    basis.resolution = size.ladder_resolution;
+    basis.resolution = size.ladder_bands;
     basis.terms = size.ladder_terms;
-    for (int level = 0; level < size.levels; ++level)
-      basis.bandwidths.push_back(std::ldexp(1.0f, level));
-    basis.mean = random_floats(random, values, 0.5f);
-    for (float& fraction : basis.mean) fraction += 0.5f;
+    basis.mean = random_floats(random, values, 3.5f);
     basis.eigen = random_floats(random, values * static_cast<size_t>(basis.terms), 1);
   }
   return bases;
@@ -167,8 +163,8 @@ inline bool equal_bases(const SsdfBasis& a, const SsdfBasis& b) {
 }
 
 inline bool equal_ladder_bases(const LadderBasis& a, const LadderBasis& b) {
-  return a.resolution == b.resolution && a.terms == b.terms && a.bandwidths == b.bandwidths &&
-         a.mean == b.mean && a.eigen == b.eigen;
+  return a.resolution == b.resolution && a.terms == b.terms && a.mean == b.mean &&
+         a.eigen == b.eigen;
 }
 
 inline bool equal_errors(const LobeError& a, const LobeError& b) {

@@ -13,12 +13,6 @@ namespace {
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-std::function<void(OpenedFile&)> bandwidths(const std::vector<float>& values) {
-  return [=](OpenedFile& f) {
-    f.replace("/visibility/ladder/basis/bandwidths", {values.size()}, values);
-  };
-}
-
 TEST(DamagedTransfer, RejectsSsdfs) {
   expect_rejected({
       {"/visibility/ssdf/basis/mean", "expected a square",
@@ -133,55 +127,53 @@ TEST(DamagedTransfer, RejectsLadders) {
       {"/visibility/ladder/basis/mean", "3 bases, expected none, one, or one for each",
        [](OpenedFile& f) {
          f.set_int("/visibility", "ladder_bases", 3);
-         f.replace("/visibility/ladder/basis/mean", {3, 3, 16}, std::vector<float>(144));
-         f.replace("/visibility/ladder/basis/eigen", {3, 3, 16, 5}, std::vector<float>(720));
+         f.replace("/visibility/ladder/basis/mean", {3, 16}, std::vector<float>(48));
+         f.replace("/visibility/ladder/basis/eigen", {3, 16, 5}, std::vector<float>(240));
        }},
-      {"/visibility/ladder/basis/bandwidths", "0 levels",
+      {"/visibility/ladder/basis/mean", "15 harmonics, expected a square up to 16^2",
        [](OpenedFile& f) {
-         f.replace("/visibility/ladder/basis/bandwidths", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {0},
+         f.replace("/visibility/ladder/basis/mean", {2, 15}, std::vector<float>(30));
+       }},
+      {"/visibility/ladder/basis/mean", "289 harmonics, expected a square up to 16^2",
+       [](OpenedFile& f) {
+         f.replace("/visibility/ladder/basis/mean", {2, 289}, std::vector<float>(578));
+       }},
+      {"/visibility/ladder/basis/mean", "0 bands",
+       [](OpenedFile& f) {
+         f.replace("/visibility/ladder/basis/mean", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {2, 0},
+                   std::vector<float>(), false);
+         f.replace("/visibility/ladder/basis/eigen", H5T_IEEE_F32LE, H5T_NATIVE_FLOAT, {2, 0, 5},
                    std::vector<float>(), false);
        }},
-      {"/visibility/ladder/basis/bandwidths", "65 levels, expected 1..64",
+      {"/visibility/ladder/basis/mean, value 0", "3.6, expected -3.5",
        [](OpenedFile& f) {
-         f.replace("/visibility/ladder/basis/bandwidths", {65}, std::vector<float>(65));
-       }},
-      {"/visibility/ladder/basis/bandwidths, value 2", "that rise", bandwidths({1, 2, 2})},
-      {"/visibility/ladder/basis/bandwidths, value 0", "positive", bandwidths({0, 2, 4})},
-      {"/visibility/ladder/basis/bandwidths, value 1", "finite", bandwidths({1, kNan, 4})},
-      {"/visibility/ladder/basis/mean", "expected 2 along dimension 1", bandwidths({1, 2})},
-      {"/visibility/ladder/basis/mean", "expected a square",
-       [](OpenedFile& f) {
-         f.replace("/visibility/ladder/basis/mean", {2, 3, 15}, std::vector<float>(90));
-       }},
-      {"/visibility/ladder/basis/mean", "power of two",
-       [](OpenedFile& f) {
-         f.replace("/visibility/ladder/basis/mean", {2, 3, 9}, std::vector<float>(54));
-         f.replace("/visibility/ladder/basis/eigen", {2, 3, 9, 5}, std::vector<float>(270));
-       }},
-      {"/visibility/ladder/basis/mean, value 0", "1.1, expected 0..1",
-       [](OpenedFile& f) {
-         f.replace("/visibility/ladder/basis/mean", {2, 3, 16}, std::vector<float>(96, 1.1f));
+         f.replace("/visibility/ladder/basis/mean", {2, 16}, std::vector<float>(32, 3.6f));
        }},
       {"/visibility/ladder/basis/mean, value 0", "finite",
        [](OpenedFile& f) {
-         f.replace("/visibility/ladder/basis/mean", {2, 3, 16}, std::vector<float>(96, kNan));
+         f.replace("/visibility/ladder/basis/mean", {2, 16}, std::vector<float>(32, kNan));
        }},
-      {"/visibility/ladder/basis/eigen", "has 3 dimensions",
+      {"/visibility/ladder/basis/eigen", "has 2 dimensions",
        [](OpenedFile& f) {
-         f.replace("/visibility/ladder/basis/eigen", {2, 48, 5}, std::vector<float>(480));
+         f.replace("/visibility/ladder/basis/eigen", {32, 5}, std::vector<float>(160));
        }},
-      {"/visibility/ladder/basis/eigen", "expected 16 along dimension 2",
+      {"/visibility/ladder/basis/eigen", "expected 16 along dimension 1",
        [](OpenedFile& f) {
-         f.replace("/visibility/ladder/basis/eigen", {2, 3, 4, 5}, std::vector<float>(120));
+         f.replace("/visibility/ladder/basis/eigen", {2, 4, 5}, std::vector<float>(40));
        }},
       {"/visibility/ladder/basis/eigen", "1025 terms",
        [](OpenedFile& f) {
-         f.replace("/visibility/ladder/basis/eigen", {2, 3, 16, 1025},
-                   std::vector<float>(2 * 3 * 16 * 1025));
+         f.replace("/visibility/ladder/basis/eigen", {2, 16, 1025},
+                   std::vector<float>(2 * 16 * 1025));
        }},
-      {"/visibility/ladder/basis/eigen", "expected float32 or float16",
+      {"/visibility/ladder/basis/eigen, value 0", "finite",
        [](OpenedFile& f) {
-         f.replace("/visibility/ladder/basis/eigen", {2, 3, 16, 5}, std::vector<double>(480));
+         f.replace("/visibility/ladder/basis/eigen", {2, 16, 5},
+                   std::vector<float>(160, kInfinity));
+       }},
+      {"/visibility/ladder/basis/eigen", "expected float32, little",
+       [](OpenedFile& f) {
+         f.replace("/visibility/ladder/basis/eigen", {2, 16, 5}, std::vector<double>(160));
        }},
       {"/visibility/ladder/coefficients", "expected 5",
        [](OpenedFile& f) {

@@ -15,16 +15,15 @@ inline constexpr int kMinSsdfResolution = 2;
 inline constexpr int kMaxSsdfResolution = 4096;
 inline constexpr int kMaxTerms = 1024;
 inline constexpr int kMaxBases = 256;
-inline constexpr int kMaxLadderLevels = 64;
 /// @}
 
-/// How coefficients and eigenimages are stored. Bytes a vertex of 48 SSDF coefficients after
+/// How coefficients and eigen-SSDFs are stored. Bytes a vertex of 48 SSDF coefficients after
 /// compression, and the RMS error of the SSDF that rounding adds, in parts of what compression to
 /// 48 terms leaves: formats/FORMAT.md.
 enum class CoefficientType {
   float32,  ///< as they are: the transfer reads back equal
   float16,  ///< both rounded by at most 2^-11 of a value
-  int16,    ///< coefficients as multiples of one step (2^-14 or less of the largest), eigenimages
+  int16,    ///< coefficients as multiples of one step (at most 2^-14 of the largest), eigen-SSDFs
           ///< as float16. Of a transfer that was read from such a file, the coefficients are kept.
 };
 
