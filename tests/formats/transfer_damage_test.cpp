@@ -15,7 +15,6 @@ namespace burnish::test {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 TEST(DamagedTransfer, RejectsWhatIsMissing) {
   const TemporaryFolder folder;
