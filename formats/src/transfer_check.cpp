@@ -111,14 +111,13 @@ struct TransferChecker {
     }
   }
 
-  /// Mean and eigenvectors of a basis whose resolution was checked.
+  /// Mean and eigenvectors of a basis of edge * edge values (texels or harmonics).
   template <class Basis>
-  void check_basis(const char* mean_path, const char* eigen_path, const Basis& basis,
+  void check_basis(const char* mean_path, const char* eigen_path, const Basis& basis, int edge,
                    float most) const {
     if (basis.terms < 1 || basis.terms > kMaxTerms)
       fail(eigen_path, fmt::format("{} terms, expected 1..{}", basis.terms, kMaxTerms));
-    const size_t values =
-        static_cast<size_t>(basis.resolution) * static_cast<size_t>(basis.resolution);
+    const size_t values = static_cast<size_t>(edge) * static_cast<size_t>(edge);
     check_count(mean_path, basis.mean.size(), values);
     check_count(eigen_path, basis.eigen.size(), values * static_cast<size_t>(basis.terms));
     check_finite(mean_path, basis.mean);
@@ -139,7 +138,7 @@ struct TransferChecker {
       fail(transfer_path::kMean,
            fmt::format("resolution {}, expected a power of two in {}..{}", basis.resolution,
                        kMinSsdfResolution, kMaxSsdfResolution));
-    check_basis(transfer_path::kMean, transfer_path::kEigen, basis,
+    check_basis(transfer_path::kMean, transfer_path::kEigen, basis, basis.resolution,
                 basis.amplitude_rad > 0 ? 1 : kPi<float>);
     if (basis.resolution != first.resolution || basis.terms != first.terms ||
         basis.amplitude_rad != first.amplitude_rad)
@@ -164,16 +163,13 @@ struct TransferChecker {
 
   void check_ladder_basis(const LadderBasis& basis) const {
     const LadderBasis& first = transfer.ladder_bases[0];
-    if (basis.resolution < 1 || basis.resolution > kMaxLadderBands)
+    if (basis.bands < 1 || basis.bands > kMaxLadderBands)
       fail(transfer_path::kLadderMean,
-           fmt::format("{} bands, expected 1..{}", basis.resolution, kMaxLadderBands));
-    if (!basis.bandwidths.empty())
-      fail(transfer_path::kLadder,
-           fmt::format("{} bandwidths, expected none", basis.bandwidths.size()));
+           fmt::format("{} bands, expected 1..{}", basis.bands, kMaxLadderBands));
     // The norm of a visibility of 1 everywhere bounds each of its harmonics.
-    check_basis(transfer_path::kLadderMean, transfer_path::kLadderEigen, basis,
+    check_basis(transfer_path::kLadderMean, transfer_path::kLadderEigen, basis, basis.bands,
                 std::sqrt(4 * kPi<float>));
-    if (basis.resolution != first.resolution || basis.terms != first.terms)
+    if (basis.bands != first.bands || basis.terms != first.terms)
       fail(transfer_path::kLadderEigen, "the bases differ in bands or terms");
   }
 

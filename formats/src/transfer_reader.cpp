@@ -179,8 +179,7 @@ class TransferReader {
     const Hdf5Dataset mean =
         reader_.open(transfer_path::kLadderMean, {&float32_}, {count, kAnyExtent});
     LadderBasis basis;
-    basis.resolution =
-        edge_of(transfer_path::kLadderMean, "harmonics", mean.shape[1], kMaxLadderBands);
+    basis.bands = edge_of(transfer_path::kLadderMean, "harmonics", mean.shape[1], kMaxLadderBands);
     const Hdf5Dataset eigen =
         reader_.open(transfer_path::kLadderEigen, {&float32_}, {count, mean.shape[1], kAnyExtent});
     check_extent(transfer_path::kLadderEigen, "terms", eigen.shape[2], kMaxTerms);

@@ -144,7 +144,7 @@ VisibilityLadder assemble(const Decomposition& decomposition, const Eigen::Vecto
   VisibilityLadder ladder;
   ladder.projection = texels * forward.cast<float>();
   ladder.offset = (decomposition.mean.transpose() * forward).cast<float>();
-  ladder.basis.resolution = bands;
+  ladder.basis.bands = bands;
   ladder.basis.terms = static_cast<int>(terms);
   const Eigen::VectorXf mean = decomposition.mean.cast<float>();
   const RowMatrixf eigen = back.cast<float>();

@@ -16,8 +16,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr int kTruthResolution = 128;
-constexpr Index kTruthTexels = Index{kTruthResolution} * kTruthResolution;
+constexpr int kTruthResolution = 128;  // at most
 
 [[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::input, "ladder", what); }
 
@@ -34,13 +33,13 @@ std::vector<Vector3f> random_directions(int count, std::uint64_t seed) {
 }
 
 // Normalised lobes around the directions, one a row, over the texels of the truth.
-RowMatrixf lobe_rows(const std::vector<Vector3f>& directions, float bandwidth) {
-  RowMatrixf rows(static_cast<Index>(directions.size()), kTruthTexels);
-  for (Index texel = 0; texel < kTruthTexels; ++texel) {
+RowMatrixf lobe_rows(const std::vector<Vector3f>& directions, float bandwidth, int resolution) {
+  RowMatrixf rows(static_cast<Index>(directions.size()), Index{resolution} * resolution);
+  for (Index texel = 0; texel < rows.cols(); ++texel) {
     const auto i = static_cast<int>(texel);
-    const Vector3f d = octahedral_texel_direction<double>(i % kTruthResolution,
-                                                          i / kTruthResolution, kTruthResolution)
-                           .cast<float>();
+    const Vector3f d =
+        octahedral_texel_direction<double>(i % resolution, i / resolution, resolution)
+            .cast<float>();
     for (Index row = 0; row < rows.rows(); ++row)
       rows(row, texel) =
           std::exp(2 * bandwidth * (directions[static_cast<std::size_t>(row)].dot(d) - 1));
@@ -81,21 +80,23 @@ std::vector<LobeError> measure_ladder(const LadderSamples& vertices,
                                       std::uint64_t seed) {
   check(vertices, directions);
   const std::vector<Vector3f> axes = random_directions(directions, seed);
+  const int mask_resolution = vertices.masks.front().resolution;
+  for (const VisibilityMask& mask : vertices.masks)
+    if (mask.resolution != mask_resolution)
+      refuse(fmt::format("a mask has a resolution of {}, expected that of the first, {}",
+                         mask.resolution, mask_resolution));
+  const int resolution = std::min(mask_resolution, kTruthResolution);
+  const Index texels = Index{resolution} * resolution;
   std::vector<RowMatrixf> lobes;
-  for (const float bandwidth : bandwidths) lobes.push_back(lobe_rows(axes, bandwidth));
+  for (const float bandwidth : bandwidths) lobes.push_back(lobe_rows(axes, bandwidth, resolution));
   const std::size_t count = vertices.masks.size();
   std::vector<Sums> sums(count * bandwidths.size());
-  // Masks that are refused are refused here, before threads are.
-  for (const VisibilityMask& mask : vertices.masks)
-    if (mask.resolution < kTruthResolution || mask.resolution % kTruthResolution != 0)
-      refuse(fmt::format("a mask has a resolution of {}, expected a multiple of {}",
-                         mask.resolution, kTruthResolution));
   tbb::parallel_for(std::size_t{0}, count, [&](std::size_t vertex) {
-    std::vector<std::uint8_t> coverage(static_cast<std::size_t>(kTruthTexels));
-    measure_coverage(vertices.masks[vertex], kTruthResolution, coverage);
-    const Eigen::VectorXf share = Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>(
-                                      coverage.data(), kTruthTexels)
-                                      .cast<float>();
+    std::vector<std::uint8_t> coverage(static_cast<std::size_t>(texels));
+    measure_coverage(vertices.masks[vertex], resolution, coverage);
+    const Eigen::VectorXf share =
+        Eigen::Map<const Eigen::Matrix<std::uint8_t, Eigen::Dynamic, 1>>(coverage.data(), texels)
+            .cast<float>();
     const LadderBasis& basis =
         vertices.bases[vertices.bases.size() == 1 ? 0 : vertices.basis_id[vertex]];
     const VisibilityHarmonics visibility = reconstruct_harmonics(

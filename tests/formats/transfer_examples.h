@@ -94,7 +94,7 @@ inline std::vector<LadderBasis> random_ladder(std::mt19937& random, const Transf
   const auto values = static_cast<size_t>(size.ladder_bands * size.ladder_bands);
   std::vector<LadderBasis> bases(static_cast<size_t>(size.ladder_bases));
   for (LadderBasis& basis : bases) {
-    basis.resolution = size.ladder_bands;
+    basis.bands = size.ladder_bands;
     basis.terms = size.ladder_terms;
     basis.mean = random_floats(random, values, 3.5f);
     basis.eigen = random_floats(random, values * static_cast<size_t>(basis.terms), 1);
@@ -163,8 +163,7 @@ inline bool equal_bases(const SsdfBasis& a, const SsdfBasis& b) {
 }
 
 inline bool equal_ladder_bases(const LadderBasis& a, const LadderBasis& b) {
-  return a.resolution == b.resolution && a.terms == b.terms && a.mean == b.mean &&
-         a.eigen == b.eigen;
+  return a.bands == b.bands && a.terms == b.terms && a.mean == b.mean && a.eigen == b.eigen;
 }
 
 inline bool equal_errors(const LobeError& a, const LobeError& b) {

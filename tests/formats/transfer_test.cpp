@@ -261,7 +261,7 @@ TEST(TransferFile, FormatVersion2ReadsToKnownValues) {
   ASSERT_EQ(transfer.bases.size(), 2u);
   EXPECT_EQ(transfer.bases[1].amplitude_rad, 1.5f);
   ASSERT_EQ(transfer.ladder_bases.size(), 2u);
-  EXPECT_EQ(transfer.ladder_bases[1].resolution, 4);
+  EXPECT_EQ(transfer.ladder_bases[1].bands, 4);
   EXPECT_EQ(transfer.ladder_terms(), 5);
   EXPECT_EQ(transfer.ladder_crossover, 16);
   // Values in memory as written down once, rounded by hand.

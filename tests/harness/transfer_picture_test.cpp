@@ -151,7 +151,7 @@ TEST(TransferPicture, LaddersShowWhatLobesSee) {
   Transfer transfer = example(0);
   // Two bands: all of the sphere sees 1/2 more or less of a cosine about +z, the middle of the map.
   LadderBasis ladder;
-  ladder.resolution = 2;
+  ladder.bands = 2;
   ladder.terms = 1;
   ladder.mean = {std::sqrt(kPi<float>), 0, 0, 0};
   ladder.eigen = {0, 0, 0, 0};

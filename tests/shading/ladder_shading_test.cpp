@@ -48,7 +48,7 @@ struct BakedPoint {
         for (size_t k = 0; k < y.size(); ++k) harmonics[k] += kPi<double> / (kFine * kFine) * y[k];
       }
     }
-    ladder.resolution = kBands;
+    ladder.bands = kBands;
     ladder.terms = ssdf.terms = 1;
     ladder.mean.assign(harmonics.begin(), harmonics.end());
     ladder.eigen.assign(harmonics.size(), 0);
@@ -208,7 +208,7 @@ TEST(LadderShading, VertexReadsItsOwnBasisAndCoefficients) {
   transfer.basis_id = {1, 0};
   transfer.coefficients = {0, 0};
   EXPECT_EQ(vertex_shading_point(transfer, 0).ladder, nullptr);
-  transfer.ladder_bases.resize(2, {1, 3, {}, {}, {}});
+  transfer.ladder_bases.resize(2, {1, 3, {}, {}});
   transfer.ladder_coefficients.resize(6);
   transfer.ladder_crossover = 20;
   const ShadingPoint point = vertex_shading_point(transfer, 1);

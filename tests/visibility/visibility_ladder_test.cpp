@@ -26,7 +26,7 @@ struct RandomLadder {
 
   RandomLadder(int bands, std::mt19937& random) {
     std::uniform_real_distribution<float> value(-0.1f, 0.1f);
-    basis.resolution = bands;
+    basis.bands = bands;
     basis.terms = 1;
     for (int i = 0; i < bands * bands; ++i) {
       basis.mean.push_back(value(random));
@@ -35,7 +35,7 @@ struct RandomLadder {
     basis.mean[0] = 1.7f;  // half the sphere, so that fractions stay between 0 and 1
   }
   double visible_at(const Vector3d& direction) const {
-    const std::vector<float> y = harmonics_at(basis.resolution, direction);
+    const std::vector<float> y = harmonics_at(basis.bands, direction);
     double sum = 0;
     for (size_t i = 0; i < y.size(); ++i)
       sum += double(y[i]) * (basis.mean[i] + coefficient * basis.eigen[i]);
@@ -119,14 +119,14 @@ TEST(LadderFraction, IsTheIntegralOfTheLobeOverTheVisibility) {
 TEST(LadderFraction, StaysBetweenNoneAndAll) {
   const float coefficient = 0;
   for (const float mean : {-4.0f, 9.0f}) {
-    const LadderBasis basis{1, 1, {}, {mean}, {0.0f}};
+    const LadderBasis basis{1, 1, {mean}, {0.0f}};
     const VisibilityHarmonics visibility = reconstruct_harmonics(basis, &coefficient);
     EXPECT_EQ(visible_fraction(visibility, Vector3f::UnitX(), lobe_bands(1)), mean > 0 ? 1 : 0);
   }
 }
 
 TEST(LadderFraction, OfEverythingVisibleIsOne) {
-  const LadderBasis basis{1, 1, {}, {std::sqrt(4 * kPi<float>)}, {0.0f}};
+  const LadderBasis basis{1, 1, {std::sqrt(4 * kPi<float>)}, {0.0f}};
   const float coefficient = 0;
   const VisibilityHarmonics visibility = reconstruct_harmonics(basis, &coefficient);
   for (const float bandwidth : {0.0f, 1.0f, 30.0f})

@@ -107,7 +107,7 @@ void add_visibility(const Transfer& transfer, Json& info) {
   info["amplitude_rad"] = transfer.bases.empty() ? 0 : transfer.bases.front().amplitude_rad;
   const bool has_ladder = !transfer.ladder_bases.empty();
   info["ladder_bases"] = transfer.ladder_bases.size();
-  info["ladder_bands"] = has_ladder ? transfer.ladder_bases.front().resolution : 0;
+  info["ladder_bands"] = has_ladder ? transfer.ladder_bases.front().bands : 0;
   info["ladder_terms"] = transfer.ladder_terms();
   info["ladder_crossover"] = transfer.ladder_crossover;
 }

@@ -90,7 +90,7 @@ VisibilityHarmonics reconstruct_harmonics(const LadderBasis& basis,
   using Matrix = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   constexpr int kMost = kMaxLadderBands * kMaxLadderBands;
   VisibilityHarmonics result;
-  result.bands = std::min(basis.resolution, kMaxLadderBands);
+  result.bands = std::min(basis.bands, kMaxLadderBands);
   const int count = result.bands * result.bands;
   const Eigen::Map<const Matrix> eigen(basis.eigen.data(), count, basis.terms);
   const Eigen::Map<const Eigen::VectorXf> mean(basis.mean.data(), count);

@@ -59,9 +59,9 @@ struct LadderSamples {
 
 /// Relative RMS errors, sqrt(sum (fraction - truth)^2 / sum truth^2), of the visible fraction of
 /// isotropic lobes of each bandwidth (>= 0), over all vertices and `directions` random directions,
-/// the same for all vertices. Truth: the lobe's sum over the mask, taken in 128^2 texels (.1 % off
-/// at bandwidth 32). Same result at any number of threads. Throws Error for sizes that do not
-/// match, no vertex, no direction or a mask of another resolution than 128 times a power of two.
+/// the same for all vertices. Truth: the lobe's sum over the mask, taken in at most 128^2 texels
+/// (.1 % off at bandwidth 32). Same result at any number of threads. Throws Error for sizes that do
+/// not match, no vertex, no direction or masks of different resolutions.
 std::vector<LobeError> measure_ladder(const LadderSamples& vertices,
                                       std::span<const float> bandwidths, int directions = 64,
                                       std::uint64_t seed = 20160229);

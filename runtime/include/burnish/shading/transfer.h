@@ -33,11 +33,10 @@ struct SsdfBasis {
 /// visibility (world frame; their order: visibility_ladder.h). A lobe's bandwidth is a factor a
 /// band, so that all lobes share a vertex's coefficients.
 struct LadderBasis {
-  int resolution = 0;             ///< bands of harmonics, degrees 0..resolution - 1
-  int terms = 0;                  ///< number of eigenvectors
-  std::vector<float> bandwidths;  ///< not used by harmonics, which serve all bandwidths
-  std::vector<float> mean;        ///< [resolution^2]
-  std::vector<float> eigen;       ///< [resolution^2][terms]
+  int bands = 0;             ///< of harmonics, degrees 0..bands - 1
+  int terms = 0;             ///< number of eigenvectors
+  std::vector<float> mean;   ///< [bands^2]
+  std::vector<float> eigen;  ///< [bands^2][terms]
 };
 
 /// Relative RMS error of the visible fraction of isotropic lobes of one bandwidth.
@@ -69,11 +68,12 @@ struct Provenance {
 /// What a bake produces: the receiver mesh and the compressed visibility of each of its vertices.
 /// Immutable while shading, and may be shared between threads.
 struct Transfer {
-  std::vector<Vector3f> positions;         ///< #V, world units of the mesh file
-  std::vector<Vector3f> normals;           ///< #V, unit
-  std::vector<Vector3f> tangents;          ///< #V, unit, orthogonal to the normal
-  std::vector<std::uint32_t> file_vertex;  ///< #V, index of the vertex in the mesh file
-  std::vector<Triangle> triangles;         ///< #F
+  std::vector<Vector3f> positions;  ///< #V, world units of the mesh file
+  std::vector<Vector3f> normals;    ///< #V, unit
+  std::vector<Vector3f> tangents;   ///< #V, unit, orthogonal to the normal
+  std::vector<std::uint32_t>
+      file_vertex;                  ///< #V, index of the vertex in its mesh file; 2^32 - 1: in none
+  std::vector<Triangle> triangles;  ///< #F
 
   std::vector<MeshPart> parts;  ///< in order, without gaps; none: one nameless part
 
@@ -84,7 +84,7 @@ struct Transfer {
   std::vector<float> coefficients;     ///< [#V][terms]
 
   /// None (no ladder), one, or one for each of `bases` (then basis_id tells which). Equal
-  /// resolution, terms and bandwidths.
+  /// bands and terms.
   std::vector<LadderBasis> ladder_bases;
   std::vector<float> ladder_coefficients;  ///< [#V][ladder terms]
   /// Lobes below this bandwidth are better served by the ladder than by the SSDF; 0 without one.
