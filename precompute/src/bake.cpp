@@ -1,336 +1,446 @@
 #include "burnish/precompute/bake.h"
 
 #include <algorithm>
-#include <bit>
+#include <atomic>
 #include <chrono>
-#include <cmath>
 #include <limits>
+#include <optional>
+#include <random>
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
+#include "bake_input.h"
+#include "bake_model.h"
+#include "bake_station.h"
 #include "burnish/formats/error.h"
-#include "burnish/precompute/pca.h"
-#include "burnish/precompute/spherical_distance_transform.h"
-#include "burnish/precompute/visibility_mask.h"
-#include "fnv1a.h"
+#include "byte_stream.h"
+#include "mask_code.h"
 #include "progress_monitor.h"
 
 namespace burnish {
 namespace {
 
-// Vertices that are projected together. Fixed, so that a block's result does not depend on who
-// computes it.
+// Vertices that are traced, projected and noted in the journal together. Fixed, so that a block's
+// result does not depend on who computes it.
 constexpr std::size_t kBlock = 32;
+
+// Kinds of journal records; the index is the block's. What was trained is not noted: from the
+// training set's masks it comes out the same again.
+constexpr std::uint32_t kTrainingRecord = 1;  // BlockState and masks
+constexpr std::uint32_t kResultRecord = 2;    // BlockState and coefficients
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void check_range(const char* name, int value, int lowest, int highest, bool power_of_two) {
-  if (value < lowest || value > highest ||
-      (power_of_two && !std::has_single_bit(static_cast<unsigned>(value))))
-    throw Error(ErrorKind::input, "bake",
-                fmt::format("{} is {}, expected {}{}..{}", name, value,
-                            power_of_two ? "a power of two in " : "", lowest, highest));
-}
-
-void check_options(const BakeOptions& options) {
-  check_range("directions", options.directions, 64, 1024, true);
-  check_range("resolution", options.resolution, 16, options.directions, true);
-  check_range("terms", options.terms, 1, options.resolution * options.resolution, false);
-  check_range("training_vertices", options.training_vertices, 0, std::numeric_limits<int>::max(),
-              false);
-}
-
-void check_receiver(const TriangleMesh& mesh) {
-  const std::string name = mesh.name.empty() ? "receiver" : mesh.name;
-  if (mesh.triangles.empty())
-    throw Error(ErrorKind::input, name, "has no triangles, expected at least one");
-  const std::size_t vertices = mesh.positions.size();
-  const auto check = [&](const char* what, std::size_t size) {
-    if (size != vertices)
-      throw Error(ErrorKind::input, name,
-                  fmt::format("has {} {}, expected one a vertex ({})", size, what, vertices));
-  };
-  check("normals", mesh.normals.size());
-  check("tangents", mesh.tangents.size());
-  check("file vertex numbers", mesh.file_vertex.size());
-}
-
-// Unit normals; zero where a vertex cannot be baked.
-std::vector<Vector3f> usable_normals(const TriangleMesh& mesh) {
-  std::vector<Vector3f> normals(mesh.normals.size());
-  for (std::size_t i = 0; i < normals.size(); ++i) {
-    const Vector3d normal = mesh.normals[i].cast<double>();
-    const double length = normal.norm();
-    const bool usable = mesh.positions[i].allFinite() && std::isfinite(length) && length > 0;
-    normals[i] = usable ? Vector3f((normal / length).cast<float>()) : Vector3f::Zero();
-  }
-  return normals;
-}
-
-// The vertices to train on and the others, both in rising order.
-struct Selection {
-  std::vector<std::uint32_t> training, others;
-};
-
-Selection select_training(const std::vector<Vector3f>& normals, int wanted) {
-  std::vector<std::uint32_t> usable;
-  for (std::uint32_t i = 0; i < normals.size(); ++i)
-    if (!normals[i].isZero(0)) usable.push_back(i);
-  const std::uint64_t all = usable.size();
-  const std::uint64_t count =
-      wanted == 0 ? all : std::min<std::uint64_t>(static_cast<std::uint64_t>(wanted), all);
-  Selection selection;
-  std::uint64_t chosen = 0;
-  for (std::uint64_t i = 0; i < all; ++i) {
-    // The middle of each of `count` equal stretches.
-    const bool train = chosen < count && i == (2 * chosen + 1) * all / (2 * count);
-    chosen += train;
-    (train ? selection.training : selection.others).push_back(usable[i]);
-  }
-  return selection;
-}
-
-// What one thread needs, and what it has counted.
-struct Worker {
-  VisibilityMask mask;
-  SphericalDistanceTransform::Scratch scratch;
-  RowMatrixf block;
+// What is known of a block of vertices.
+struct BlockState {
   std::uint64_t rays = 0;
-  double rays_s = 0, distance_s = 0, project_s = 0;
-};
-using Workers = tbb::enumerable_thread_specific<Worker>;
-
-// Everything that is the same for every vertex.
-struct Station {
-  const TriangleMesh& mesh;
-  std::vector<Vector3f> normals;
-  RayScene scene;
-  DirectionTable directions;
-  SphericalDistanceTransform transform;
-
-  Station(const TriangleMesh& receiver, std::span<const TriangleMesh> occluders,
-          const BakeOptions& options)
-      : mesh(receiver),
-        normals(usable_normals(receiver)),
-        directions(options.directions),
-        transform(directions, options.resolution) {
-    scene.add_mesh(receiver.positions, receiver.triangles);
-    for (const TriangleMesh& occluder : occluders)
-      scene.add_mesh(occluder.positions, occluder.triangles);
-    scene.commit();
-  }
-
-  Eigen::Index texels() const {
-    return Eigen::Index{transform.resolution()} * transform.resolution();
-  }
-
-  void compute_ssdf(std::uint32_t vertex, std::span<float> ssdf, Worker& worker) const {
-    if (worker.mask.resolution == 0) worker.mask = VisibilityMask(directions.resolution());
-    const Clock::time_point start = Clock::now();
-    worker.rays +=
-        sample_visibility(scene, directions, mesh.positions[vertex], normals[vertex], worker.mask);
-    const Clock::time_point middle = Clock::now();
-    transform.transform(worker.mask, ssdf, worker.scratch);
-    worker.rays_s += std::chrono::duration<double>(middle - start).count();
-    worker.distance_s += seconds_since(middle);
-  }
+  std::uint64_t occluded = 0;  // vertices found to see less than their horizon leaves open
 };
 
-std::span<float> row_of(RowMatrixf& matrix, Eigen::Index row) {
-  return {matrix.row(row).data(), static_cast<std::size_t>(matrix.cols())};
-}
-
-RowMatrixf compute_training(const Station& station, const std::vector<std::uint32_t>& training,
-                            const Progress& progress, Workers& workers) {
-  RowMatrixf ssdfs(static_cast<Eigen::Index>(training.size()), station.texels());
-  ProgressMonitor monitor(progress, "train", training.size());
-  tbb::parallel_for(std::size_t{0}, training.size(), [&](std::size_t i) {
-    station.compute_ssdf(training[i], row_of(ssdfs, static_cast<Eigen::Index>(i)), workers.local());
-    monitor.advance(1);
-  });
-  return ssdfs;
-}
-
-// Writes coefficients where the transfer keeps them, block by block; each block's residual is kept
-// apart so that the sum's order is fixed.
-class Projector {
+// Vertices in blocks.
+class Blocks {
  public:
-  Projector(const PcaBasis& basis, Transfer& transfer) : basis_(basis), transfer_(transfer) {}
-
-  PcaResidual project(const Eigen::Ref<const RowMatrixf>& centred,
-                      std::span<const std::uint32_t> vertices, Worker& worker) const {
-    const Clock::time_point start = Clock::now();
-    const auto terms = static_cast<std::size_t>(basis_.terms());
-    std::vector<float> coefficients(vertices.size() * terms);
-    const PcaResidual residual = project_pca(basis_, centred, coefficients);
-    for (std::size_t i = 0; i < vertices.size(); ++i)
-      std::copy_n(coefficients.data() + i * terms, terms,
-                  transfer_.coefficients.data() + vertices[i] * terms);
-    worker.project_s += seconds_since(start);
-    return residual;
+  explicit Blocks(const std::vector<std::uint32_t>& vertices) : vertices_(vertices) {}
+  std::size_t size() const { return (vertices_.size() + kBlock - 1) / kBlock; }
+  std::span<const std::uint32_t> operator[](std::size_t block) const {
+    const std::size_t first = block * kBlock;
+    return std::span(vertices_).subspan(first, std::min(kBlock, vertices_.size() - first));
   }
 
  private:
-  const PcaBasis& basis_;
-  Transfer& transfer_;
+  const std::vector<std::uint32_t>& vertices_;
 };
 
-template <class Body>
-PcaResidual for_vertex_blocks(const std::vector<std::uint32_t>& vertices, const Body& body) {
-  std::vector<PcaResidual> residuals((vertices.size() + kBlock - 1) / kBlock);
-  tbb::parallel_for(std::size_t{0}, residuals.size(), [&](std::size_t i) {
-    const std::size_t first = i * kBlock;
-    residuals[i] =
-        body(first, std::span(vertices).subspan(first, std::min(kBlock, vertices.size() - first)));
-  });
-  PcaResidual sum;
-  for (const PcaResidual& residual : residuals) sum += residual;
+// One bake, stage by stage. Blocks of the training set come first in all that is kept by block.
+class Bake {
+ public:
+  Bake(const TriangleMesh& receiver, std::span<const TriangleMesh> occluders,
+       const BakeOptions& options, const BakeRun& run, const BakeStation& station)
+      : receiver_(receiver),
+        occluders_(occluders),
+        options_(options),
+        run_(run),
+        station_(station),
+        roles_(assign_roles(station.normals(), options)),
+        training_(roles_.training),
+        others_(roles_.others),
+        states_(training_.size() + others_.size()),
+        recalled_masks_(training_.size()),
+        recalled_results_(states_.size()) {
+    if (roles_.training.empty())
+      throw Error(ErrorKind::input, receiver_name(receiver),
+                  "has no vertex with a finite position and a normal, expected at least one");
+  }
+
+  Transfer bake();
+  BakeTimings timings() const;
+
+ private:
+  bool nothing_occludes() const;
+  void open_journal();
+  void trace_training();
+  void trace_training_block(std::size_t block, BakeWorker& worker);
+  bool recall_training_block(std::size_t block, BakeWorker& worker);
+  bool finds_occlusion(std::uint32_t vertex, const VisibilityMask& mask);
+  void trace_measured();
+  void train();
+  void measure();
+  void project_all();
+  void project_block(std::size_t block, BakeWorker& worker);
+  bool recall_result(std::size_t block);
+  void copy_to_transfer(std::span<const std::uint32_t> vertices, const BlockCoefficients& result);
+  std::span<const std::uint32_t> vertices_of(std::size_t block) const;
+  void copy_meshes();
+  void describe();
+
+  const TriangleMesh& receiver_;
+  std::span<const TriangleMesh> occluders_;
+  const BakeOptions& options_;
+  const BakeRun& run_;
+  const BakeStation& station_;
+  const VertexRoles roles_;
+  const Blocks training_, others_;
+
+  std::vector<BlockState> states_;
+  std::vector<std::vector<std::byte>> recalled_masks_, recalled_results_;
+  std::atomic<bool> occlusion_found_ = false;
+  std::atomic<std::uint64_t> resumed_ = 0;  // vertices
+  VisibilityRows training_rows_, measured_rows_;
+  std::vector<VisibilityMask> measured_masks_;
+  std::optional<BakeModel> model_;
+  BakeWorkers workers_;
+  Transfer transfer_;
+  BakeTimings timings_;
+};
+
+Transfer Bake::bake() {
+  copy_meshes();
+  describe();
+  if (nothing_occludes()) return std::move(transfer_);
+  open_journal();
+  trace_training();
+  trace_measured();
+  train();
+  measure();
+  project_all();
+  std::uint64_t occluded = 0;
+  for (const BlockState& state : states_) {
+    transfer_.provenance.rays += state.rays;
+    occluded += state.occluded;
+  }
+  if (occluded > 0) {
+    model_->write_bases(transfer_);
+  } else {
+    transfer_.basis_id.clear();
+    transfer_.coefficients.clear();
+    transfer_.ladder_coefficients.clear();
+  }
+  return std::move(transfer_);
+}
+
+BakeTimings Bake::timings() const {
+  BakeTimings sum = timings_;
+  sum.vertices_resumed = resumed_;
+  for (const BakeWorker& worker : workers_) {
+    sum.rays_cast += worker.rays;
+    sum.rays_s += worker.rays_s;
+    sum.distance_s += worker.distance_s;
+    sum.project_s += worker.project_s;
+  }
   return sum;
 }
 
-PcaResidual project_training(const Selection& selection, const RowMatrixf& centred,
-                             const Projector& projector, Workers& workers) {
-  return for_vertex_blocks(
-      selection.training, [&](std::size_t first, std::span<const std::uint32_t> vertices) {
-        return projector.project(centred.middleRows(static_cast<Eigen::Index>(first),
-                                                    static_cast<Eigen::Index>(vertices.size())),
-                                 vertices, workers.local());
-      });
+bool Bake::nothing_occludes() const {
+  const auto all_open = [&](const std::vector<std::uint32_t>& vertices) {
+    return std::all_of(vertices.begin(), vertices.end(),
+                       [&](std::uint32_t vertex) { return station_.sees_all(vertex); });
+  };
+  return all_open(roles_.training) && all_open(roles_.others);
 }
 
-PcaResidual project_others(const Station& station, const Selection& selection,
-                           const PcaBasis& basis, const Projector& projector,
-                           const Progress& progress, Workers& workers) {
-  ProgressMonitor monitor(progress, "bake", selection.others.size());
-  return for_vertex_blocks(
-      selection.others, [&](std::size_t, std::span<const std::uint32_t> vertices) {
-        Worker& worker = workers.local();
-        worker.block.resize(static_cast<Eigen::Index>(vertices.size()), station.texels());
-        for (std::size_t i = 0; i < vertices.size(); ++i) {
-          const auto row = static_cast<Eigen::Index>(i);
-          station.compute_ssdf(vertices[i], row_of(worker.block, row), worker);
-          worker.block.row(row) -= basis.mean;
-          monitor.advance(1);
-        }
-        return projector.project(worker.block, vertices, worker);
-      });
+void Bake::open_journal() {
+  if (!run_.journal) return;
+  const BakeJournal::Facts facts = bake_facts(receiver_, occluders_, options_);
+  if (!run_.resume) return run_.journal->start(facts);
+  run_.journal->resume(facts, [&](BakeJournal::Record&& record) {
+    auto* const kept = record.kind == kTrainingRecord ? &recalled_masks_
+                       : record.kind == kResultRecord ? &recalled_results_
+                                                      : nullptr;
+    if (kept && record.index < kept->size()) (*kept)[record.index] = std::move(record.payload);
+  });
 }
 
-void add_mesh_to(const TriangleMesh& mesh, Fnv1a& hash) {
-  hash.add(std::span(mesh.positions));
-  hash.add(std::span(mesh.normals));
-  hash.add(std::span(mesh.tangents));
-  hash.add(std::span(mesh.triangles));
+void Bake::trace_training() {
+  training_rows_.resize(roles_.training.size(), options_);
+  ProgressMonitor monitor(run_.progress, "train", roles_.training.size());
+  tbb::parallel_for(std::size_t{0}, training_.size(), [&](std::size_t block) {
+    BakeWorker& worker = workers_.local();
+    if (!recall_training_block(block, worker)) trace_training_block(block, worker);
+    monitor.advance(training_[block].size());
+  });
+  recalled_masks_ = {};
 }
 
-void copy_meshes(const TriangleMesh& receiver, std::span<const TriangleMesh> occluders,
-                 Transfer& transfer) {
-  transfer.positions = receiver.positions;
-  transfer.normals = receiver.normals;
-  transfer.tangents = receiver.tangents;
-  transfer.file_vertex = receiver.file_vertex;
-  transfer.triangles = receiver.triangles;
-  for (const TriangleMesh& occluder : occluders) {
-    const std::size_t first = transfer.occluder_positions.size();
+void Bake::trace_training_block(std::size_t block, BakeWorker& worker) {
+  ByteWriter masks;
+  BlockState state;
+  for (std::size_t i = 0; i < training_[block].size(); ++i) {
+    const std::uint32_t vertex = training_[block][i];
+    state.rays += station_.trace(vertex, worker);
+    state.occluded += finds_occlusion(vertex, worker.mask);
+    if (run_.journal) encode_mask(worker.mask, masks);
+    station_.derive_encoded(worker.mask, block * kBlock + i, training_rows_, worker);
+  }
+  states_[block] = state;
+  if (!run_.journal) return;
+  ByteWriter record;
+  record.put(state);
+  record.put(masks.bytes());
+  run_.journal->append(kTrainingRecord, static_cast<std::uint32_t>(block), record.bytes());
+}
+
+bool Bake::recall_training_block(std::size_t block, BakeWorker& worker) {
+  if (recalled_masks_[block].empty()) return false;
+  ByteReader record(recalled_masks_[block]);
+  VisibilityMask mask(options_.directions);
+  states_[block] = record.get<BlockState>();
+  for (std::size_t i = 0; i < training_[block].size(); ++i) {
+    decode_mask(record, mask);
+    station_.derive_encoded(mask, block * kBlock + i, training_rows_, worker);
+  }
+  return record.complete();
+}
+
+// One vertex is enough: after that nobody looks.
+bool Bake::finds_occlusion(std::uint32_t vertex, const VisibilityMask& mask) {
+  if (occlusion_found_ || !station_.is_occluded(vertex, mask)) return false;
+  occlusion_found_ = true;
+  return true;
+}
+
+void Bake::trace_measured() {
+  const Clock::time_point start = Clock::now();
+  measured_masks_.resize(roles_.measured.size());
+  measured_rows_.resize(roles_.measured.size(), options_);
+  tbb::parallel_for(std::size_t{0}, measured_masks_.size(), [&](std::size_t i) {
+    BakeWorker& worker = workers_.local();
+    station_.trace(roles_.measured[i], worker);
+    measured_masks_[i] = worker.mask;
+    station_.derive(worker.mask, i, measured_rows_, worker);
+  });
+  timings_.measure_s += seconds_since(start);
+}
+
+void Bake::train() {
+  const auto step = [&](std::uint64_t done, std::uint64_t total) {
+    if (run_.progress && !run_.progress("basis", done, total)) throw Cancelled();
+  };
+  model_.emplace(training_rows_, measured_rows_, options_, step, timings_);
+}
+
+void Bake::measure() {
+  const Clock::time_point start = Clock::now();
+  model_->measure(measured_rows_, measured_masks_, transfer_.provenance);
+  transfer_.provenance.residual_vertices = static_cast<int>(measured_masks_.size());
+  transfer_.provenance.residual_held_out = roles_.held_out;
+  measured_masks_ = {};
+  measured_rows_ = {};
+  timings_.measure_s += seconds_since(start);
+}
+
+std::span<const std::uint32_t> Bake::vertices_of(std::size_t block) const {
+  return block < training_.size() ? training_[block] : others_[block - training_.size()];
+}
+
+void Bake::project_all() {
+  const std::size_t vertices = receiver_.positions.size();
+  transfer_.basis_id.assign(vertices, 0);
+  transfer_.coefficients.assign(vertices * model_->terms(), 0.0f);
+  transfer_.ladder_coefficients.assign(vertices * model_->ladder_terms(), 0.0f);
+  ProgressMonitor monitor(run_.progress, "bake", roles_.training.size() + roles_.others.size());
+  tbb::parallel_for(std::size_t{0}, states_.size(), [&](std::size_t block) {
+    if (!recall_result(block)) project_block(block, workers_.local());
+    monitor.advance(vertices_of(block).size());
+  });
+}
+
+void Bake::project_block(std::size_t block, BakeWorker& worker) {
+  const std::span<const std::uint32_t> vertices = vertices_of(block);
+  const bool is_training = block < training_.size();
+  if (!is_training) {
+    worker.rows.resize(vertices.size(), options_);
+    BlockState state;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      state.rays += station_.trace(vertices[i], worker);
+      state.occluded += finds_occlusion(vertices[i], worker.mask);
+      station_.derive_encoded(worker.mask, i, worker.rows, worker);
+    }
+    states_[block] = state;
+  }
+  const Clock::time_point start = Clock::now();
+  BlockCoefficients result(vertices.size(), *model_);
+  model_->project(is_training ? training_rows_ : worker.rows, is_training ? block * kBlock : 0,
+                  result, worker.projection);
+  worker.project_s += seconds_since(start);
+  copy_to_transfer(vertices, result);
+  if (!run_.journal) return;
+  ByteWriter record;
+  record.put(states_[block]);
+  result.write(record);
+  run_.journal->append(kResultRecord, static_cast<std::uint32_t>(block), record.bytes());
+}
+
+bool Bake::recall_result(std::size_t block) {
+  if (recalled_results_[block].empty()) return false;
+  ByteReader record(recalled_results_[block]);
+  BlockCoefficients result(vertices_of(block).size(), *model_);
+  const auto state = record.get<BlockState>();
+  result.read(record);
+  if (!record.complete()) return false;
+  states_[block] = state;
+  copy_to_transfer(vertices_of(block), result);
+  recalled_results_[block] = {};
+  resumed_ += vertices_of(block).size();
+  return true;
+}
+
+void Bake::copy_to_transfer(std::span<const std::uint32_t> vertices,
+                            const BlockCoefficients& result) {
+  const auto copy_rows = [&](const std::vector<float>& from, std::vector<float>& to,
+                             std::size_t terms) {
+    for (std::size_t i = 0; i < vertices.size(); ++i)
+      std::copy_n(from.data() + i * terms, terms, to.data() + vertices[i] * terms);
+  };
+  copy_rows(result.ssdf, transfer_.coefficients, model_->terms());
+  copy_rows(result.ladder, transfer_.ladder_coefficients, model_->ladder_terms());
+  for (std::size_t i = 0; i < vertices.size(); ++i)
+    transfer_.basis_id[vertices[i]] = result.basis_id[i];
+}
+
+void Bake::copy_meshes() {
+  transfer_.positions = receiver_.positions;
+  transfer_.normals = receiver_.normals;
+  transfer_.tangents = receiver_.tangents;
+  transfer_.file_vertex = receiver_.file_vertex;
+  transfer_.triangles = receiver_.triangles;
+  transfer_.parts = receiver_.parts;
+  if (transfer_.parts.empty())
+    transfer_.parts.push_back({receiver_.name, 0,
+                               static_cast<std::uint32_t>(receiver_.positions.size()), 0,
+                               static_cast<std::uint32_t>(receiver_.triangles.size())});
+  for (const TriangleMesh& occluder : occluders_) {
+    const std::size_t first = transfer_.occluder_positions.size();
     if (first + occluder.positions.size() > std::numeric_limits<std::uint32_t>::max())
       throw Error(ErrorKind::input, "bake", "the occluders have more than 2^32 vertices together");
-    transfer.occluder_positions.insert(transfer.occluder_positions.end(),
-                                       occluder.positions.begin(), occluder.positions.end());
+    transfer_.occluder_positions.insert(transfer_.occluder_positions.end(),
+                                        occluder.positions.begin(), occluder.positions.end());
     for (Triangle triangle : occluder.triangles) {
       for (std::uint32_t& v : triangle) v += static_cast<std::uint32_t>(first);
-      transfer.occluder_triangles.push_back(triangle);
+      transfer_.occluder_triangles.push_back(triangle);
     }
   }
 }
 
-SsdfBasis to_ssdf_basis(const PcaBasis& basis, int resolution) {
-  SsdfBasis result;
-  result.resolution = resolution;
-  result.terms = static_cast<int>(basis.terms());
-  result.mean.assign(basis.mean.data(), basis.mean.data() + basis.mean.size());
-  result.eigen.assign(basis.components.data(), basis.components.data() + basis.components.size());
-  return result;
+// All that does not have to be measured.
+void Bake::describe() {
+  Provenance& provenance = transfer_.provenance;
+  provenance.version = BURNISH_VERSION;
+  provenance.mesh_name = receiver_.name;
+  provenance.mesh_hash = hash_of(receiver_);
+  provenance.occluder_hash = hash_of(occluders_);
+  provenance.directions = options_.directions;
+  provenance.coarsest = std::min(options_.coarsest, options_.directions);
+  provenance.origin_offset = station_.origin_offset();
+  provenance.training_vertices = static_cast<int>(roles_.training.size());
 }
 
-// All but the number of rays.
-Provenance describe(const TriangleMesh& receiver, std::span<const TriangleMesh> occluders,
-                    const BakeOptions& options, const Selection& selection,
-                    Eigen::Index texels_each, const PcaResidual& residual) {
-  Provenance provenance;
-  provenance.version = BURNISH_VERSION;
-  provenance.mesh_name = receiver.name;
-  Fnv1a mesh_hash, occluder_hash;
-  add_mesh_to(receiver, mesh_hash);
-  for (const TriangleMesh& occluder : occluders) add_mesh_to(occluder, occluder_hash);
-  provenance.mesh_hash = mesh_hash.hex();
-  if (!occluders.empty()) provenance.occluder_hash = occluder_hash.hex();
-  provenance.directions = options.directions;
-  provenance.training_vertices = static_cast<int>(selection.training.size());
-  const double texels = static_cast<double>(texels_each) *
-                        static_cast<double>(selection.training.size() + selection.others.size());
-  provenance.residual_rms_rad = std::sqrt(residual.squared / texels);
-  provenance.wrong_sign_fraction = static_cast<double>(residual.wrong_signs) / texels;
-  return provenance;
-}
+// The scene of the run, or one that is made for it.
+class RunScene {
+ public:
+  RunScene(const TriangleMesh& receiver, std::span<const TriangleMesh> occluders,
+           const BakeRun& run) {
+    const Clock::time_point start = Clock::now();
+    if (!run.scene) made_.emplace(make_ray_scene(receiver, occluders));
+    scene_ = run.scene ? run.scene : &*made_;
+    seconds_ = seconds_since(start);
+  }
+  const RayScene& get() const { return *scene_; }
+  double seconds() const { return seconds_; }
+
+ private:
+  std::optional<RayScene> made_;
+  const RayScene* scene_;
+  double seconds_ = 0;
+};
 
 }  // namespace
 
+RayScene make_ray_scene(const TriangleMesh& receiver, std::span<const TriangleMesh> occluders) {
+  RayScene scene;
+  scene.add_mesh(receiver.positions, receiver.triangles);
+  for (const TriangleMesh& occluder : occluders)
+    scene.add_mesh(occluder.positions, occluder.triangles);
+  scene.commit();
+  return scene;
+}
+
 Transfer bake(const TriangleMesh& receiver, std::span<const TriangleMesh> occluders,
-              const BakeOptions& options, const Progress& progress, BakeTimings* timings) {
+              const BakeOptions& options, const BakeRun& run) {
   const Clock::time_point start = Clock::now();
-  check_options(options);
+  check_bake_options(options);
   check_receiver(receiver);
-  const Station station(receiver, occluders, options);
-  const Selection selection = select_training(station.normals, options.training_vertices);
-  if (selection.training.empty())
-    throw Error(ErrorKind::input, receiver.name.empty() ? "receiver" : receiver.name,
-                "has no vertex with a finite position and a normal, expected at least one");
-
-  Workers workers;
-  RowMatrixf training = compute_training(station, selection.training, progress, workers);
-
-  // The passes of the decomposition, and one more for the coefficients of what it was trained on.
-  std::uint64_t passes = 0;
-  const auto report = [&](std::uint64_t done) {
-    if (progress && !progress("basis", done, passes + 1)) throw Cancelled();
-  };
-  const Clock::time_point pca_start = Clock::now();
-  const PcaBasis basis = train_pca(training, {.terms = options.terms}, [&](int done, int total) {
-    passes = static_cast<std::uint64_t>(total);
-    report(static_cast<std::uint64_t>(done));
-  });
-  const double pca_s = seconds_since(pca_start);
-
-  Transfer transfer;
-  copy_meshes(receiver, occluders, transfer);
-  transfer.bases.push_back(to_ssdf_basis(basis, options.resolution));
-  transfer.basis_id.assign(receiver.positions.size(), 0);
-  transfer.coefficients.assign(receiver.positions.size() * static_cast<std::size_t>(basis.terms()),
-                               0.0f);
-  const Projector projector(basis, transfer);
-  PcaResidual residual = project_training(selection, training, projector, workers);
-  training.resize(0, 0);
-  report(passes + 1);
-  residual += project_others(station, selection, basis, projector, progress, workers);
-
-  transfer.provenance =
-      describe(receiver, occluders, options, selection, station.texels(), residual);
-  BakeTimings spent;
-  for (const Worker& worker : workers) {
-    transfer.provenance.rays += worker.rays;
-    spent.rays_s += worker.rays_s;
-    spent.distance_s += worker.distance_s;
-    spent.project_s += worker.project_s;
+  const RunScene scene(receiver, occluders, run);
+  const BakeStation station(receiver, scene.get(), options);
+  Bake work(receiver, occluders, options, run, station);
+  Transfer transfer = work.bake();
+  if (run.timings) {
+    *run.timings = work.timings();
+    run.timings->scene_s = scene.seconds();
+    run.timings->total_s = seconds_since(start);
   }
-  spent.pca_s = pca_s;
-  spent.total_s = seconds_since(start);
-  if (timings) *timings = spent;
   return transfer;
+}
+
+VisibilityVerification verify_visibility(const TriangleMesh& receiver,
+                                         std::span<const TriangleMesh> occluders,
+                                         const BakeOptions& options, int count, std::uint64_t seed,
+                                         const BakeRun& run) {
+  check_bake_options(options);
+  check_receiver(receiver);
+  const RunScene scene(receiver, occluders, run);
+  const BakeStation station(receiver, scene.get(), options);
+  std::vector<std::uint32_t> vertices;
+  for (std::uint32_t v = 0; v < receiver.positions.size(); ++v)
+    if (!station.normals()[v].isZero(0)) vertices.push_back(v);
+  // The first of a random order: std::shuffle differs between standard libraries.
+  std::mt19937_64 random(seed);
+  const std::size_t wanted = std::min(vertices.size(), static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < wanted; ++i)
+    std::swap(vertices[i], vertices[i + random() % (vertices.size() - i)]);
+  vertices.resize(wanted);
+
+  BakeWorkers workers;
+  std::vector<VertexVerification> found(wanted);
+  ProgressMonitor monitor(run.progress, "verify", wanted);
+  tbb::parallel_for(std::size_t{0}, wanted, [&](std::size_t i) {
+    found[i] = station.verify(vertices[i], workers.local());
+    monitor.advance(1);
+  });
+  VisibilityVerification sum;
+  sum.vertices = wanted;
+  for (std::size_t i = 0; i < wanted; ++i) {
+    sum.directions += found[i].directions;
+    sum.differing += found[i].differing;
+    if (found[i].worst_ssdf_error_rad > sum.worst_ssdf_error_rad) {
+      sum.worst_ssdf_error_rad = found[i].worst_ssdf_error_rad;
+      sum.worst_vertex = vertices[i];
+    }
+  }
+  return sum;
 }
 
 }  // namespace burnish

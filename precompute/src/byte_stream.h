@@ -14,20 +14,15 @@ class ByteWriter {
   template <class T>
   void put(std::span<const T> values) {
     static_assert(std::is_trivially_copyable_v<T>);
-    const auto bytes = std::as_bytes(values);
-    bytes_.insert(bytes_.end(), bytes.begin(), bytes.end());
+    if (values.empty()) return;
+    const std::size_t end = bytes_.size();
+    bytes_.resize(end + values.size_bytes());
+    std::memcpy(bytes_.data() + end, values.data(), values.size_bytes());
   }
   template <class T>
   void put(const T& value) {
     put(std::span<const T>(&value, 1));
   }
-  /// With its length.
-  template <class T>
-  void put_vector(const std::vector<T>& values) {
-    put(std::uint64_t{values.size()});
-    put(std::span<const T>(values));
-  }
-
   std::span<const std::byte> bytes() const { return bytes_; }
 
  private:
@@ -58,15 +53,6 @@ class ByteReader {
     get(std::span<T>(&value, 1));
     return value;
   }
-  template <class T>
-  std::vector<T> get_vector() {
-    const auto size = get<std::uint64_t>();
-    std::vector<T> values(size <= bytes_.size() / sizeof(T) ? size : 0);
-    if (values.size() != size) short_ = true;
-    get(std::span<T>(values));
-    return values;
-  }
-
   /// Everything was there, and nothing is left.
   bool complete() const { return !short_ && bytes_.empty(); }
 

@@ -1,8 +1,11 @@
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -11,14 +14,24 @@
 
 #include "burnish/formats/error.h"
 #include "burnish/precompute/bake.h"
+#include "burnish/precompute/lobe_visibility_error.h"
 #include "burnish/precompute/spherical_distance_transform.h"
-#include "burnish/sphere/octahedral_map.h"
+#include "burnish/visibility/visibility_ladder.h"
 #include "precompute/test_meshes.h"
 
 namespace burnish {
 namespace {
 
-constexpr BakeOptions kSmall{.directions = 64, .resolution = 16, .terms = 12};
+// Every ray is cast, so that the truth is simple; errors are measured on all vertices that are
+// left.
+constexpr BakeOptions kSmall{.directions = 64,
+                             .coarsest = 64,
+                             .resolution = 16,
+                             .terms = 12,
+                             .amplitude_rad = 0,
+                             .bases = 1,
+                             .ladder_terms = 10,
+                             .residual_vertices = 1 << 16};
 
 // A wavy floor with a sphere over it, turned so that nothing is aligned with anything.
 TriangleMesh make_scene(float scale = 1) {
@@ -79,22 +92,15 @@ std::vector<std::vector<float>> direct_ssdfs(const TriangleMesh& mesh, const Bak
   return ssdfs;
 }
 
-double pitch(const BakeOptions& options) {
-  const DirectionTable directions(options.directions);
-  return SphericalDistanceTransform(directions, options.resolution).boundary_pitch();
-}
-
-void expect_horizon(const Transfer& transfer, const BakeOptions& options, double slack) {
-  for (std::size_t v = 0; v < transfer.vertex_count(); ++v) {
-    const std::vector<double> ssdf = reconstruct(transfer, v);
-    for (int i = 0; i < options.resolution * options.resolution; ++i) {
-      const auto d = octahedral_texel_direction<double>(i % options.resolution,
-                                                        i / options.resolution, options.resolution);
-      const double horizon =
-          std::asin(std::clamp(transfer.normals[v].cast<double>().dot(d), -1.0, 1.0));
-      ASSERT_NEAR(ssdf[static_cast<std::size_t>(i)], horizon, slack) << "vertex " << v;
-    }
+// The vertices that a bake of all `count` vertices trains on: one of each of equal stretches.
+std::set<std::size_t> trained(std::size_t count, std::size_t training) {
+  std::mt19937_64 random(20031027);
+  std::set<std::size_t> vertices;
+  for (std::size_t i = 0; i < training; ++i) {
+    const std::size_t first = i * count / training, end = (i + 1) * count / training;
+    vertices.insert(first + random() % (end - first));
   }
+  return vertices;
 }
 
 void expect_equal(const Transfer& a, const Transfer& b) {
@@ -104,33 +110,50 @@ void expect_equal(const Transfer& a, const Transfer& b) {
     EXPECT_EQ(a.bases[i].mean, b.bases[i].mean);
     EXPECT_EQ(a.bases[i].eigen, b.bases[i].eigen);
   }
+  EXPECT_EQ(a.basis_id, b.basis_id);
   EXPECT_EQ(a.coefficients, b.coefficients);
+  ASSERT_EQ(a.ladder_bases.size(), b.ladder_bases.size());
+  for (std::size_t i = 0; i < a.ladder_bases.size(); ++i) {
+    EXPECT_EQ(a.ladder_bases[i].mean, b.ladder_bases[i].mean);
+    EXPECT_EQ(a.ladder_bases[i].eigen, b.ladder_bases[i].eigen);
+  }
+  EXPECT_EQ(a.ladder_coefficients, b.ladder_coefficients);
   EXPECT_EQ(a.provenance.rays, b.provenance.rays);
   EXPECT_EQ(a.provenance.residual_rms_rad, b.provenance.residual_rms_rad);
   EXPECT_EQ(a.provenance.wrong_sign_fraction, b.provenance.wrong_sign_fraction);
 }
 
-TEST(Bake, SingleTriangleSeesItsHorizon) {
+void expect_only_horizon(const Transfer& transfer) {
+  EXPECT_TRUE(transfer.bases.empty());
+  EXPECT_TRUE(transfer.basis_id.empty());
+  EXPECT_TRUE(transfer.coefficients.empty());
+  EXPECT_TRUE(transfer.ladder_bases.empty());
+  EXPECT_TRUE(transfer.ladder_coefficients.empty());
+  EXPECT_EQ(transfer.ladder_crossover, 0);
+}
+
+TEST(Bake, WhereNothingOccludesThereIsNothingToStore) {
   TriangleMesh mesh;
   mesh.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 1}};
   mesh.normals.assign(3, Vector3f(0, -1, 1).normalized());
   mesh.triangles = {{0, 1, 2}};
   test::complete(mesh);
-  const Transfer transfer = bake(mesh, {}, kSmall);
-  EXPECT_EQ(transfer.terms(), 1) << "equal SSDFs have no directions but a zero one";
-  for (const float c : transfer.coefficients) EXPECT_EQ(c, 0);
-  EXPECT_EQ(transfer.provenance.residual_rms_rad, 0);
-  EXPECT_EQ(transfer.provenance.wrong_sign_fraction, 0);
-  expect_horizon(transfer, kSmall, pitch(kSmall));  // the transform's stated bound
+  const Transfer triangle = bake(mesh, {}, kSmall);
+  expect_only_horizon(triangle);
+  EXPECT_EQ(triangle.provenance.rays, 0u);
+
+  const Transfer sphere = bake(test::make_sphere({1, 2, 3}, 0.5f, 8), {}, kSmall);
+  expect_only_horizon(sphere);
+  EXPECT_EQ(sphere.provenance.rays, 0u);
 }
 
-TEST(Bake, ConvexMeshSeesItsHorizons) {
-  const TriangleMesh sphere = test::make_sphere({1, 2, 3}, 0.5f, 8);
-  BakeOptions options = kSmall;
-  options.terms = 256;  // as many as there are texels: nothing is lost to compression
-  const Transfer transfer = bake(sphere, {}, options);
-  // The transform's stated bound, and float rounding of sums over 256 terms.
-  expect_horizon(transfer, options, pitch(options) + 1e-4);
+// A speck high above is nothing that a proof by bounds can rule out, and no ray meets it.
+TEST(Bake, WhatNoRayMeetsDoesNotOcclude) {
+  TriangleMesh mesh = test::make_disc({0, 0, 0}, 1, 9);
+  TriangleMesh speck = test::make_disc({0.3f, 0.2f, 40}, 1e-3f, 3);
+  const Transfer transfer = bake(mesh, std::span(&speck, 1), kSmall);
+  expect_only_horizon(transfer);
+  EXPECT_GT(transfer.provenance.rays, 0u);
 }
 
 TEST(Bake, AllTermsReproduceEverySsdf) {
@@ -147,7 +170,12 @@ TEST(Bake, AllTermsReproduceEverySsdf) {
   }
 }
 
-TEST(Bake, ResidualIsThatOfTheReconstruction) {
+// Lobes see no difference between distances beyond a right angle; nor does the residual.
+double within_right_angle(double distance) {
+  return std::clamp(distance, -kPi<double> / 2, kPi<double> / 2);
+}
+
+TEST(Bake, ResidualIsThatOfHeldOutVertices) {
   const TriangleMesh mesh = make_scene();
   const std::vector<std::vector<float>> truth = direct_ssdfs(mesh, kSmall);
   for (const int training : {0, 100}) {
@@ -157,11 +185,17 @@ TEST(Bake, ResidualIsThatOfTheReconstruction) {
     ASSERT_EQ(transfer.terms(), 12);
     EXPECT_EQ(transfer.provenance.training_vertices,
               training ? training : static_cast<int>(mesh.positions.size()));
+    EXPECT_EQ(transfer.provenance.residual_held_out, training > 0);
+    EXPECT_EQ(transfer.provenance.residual_vertices,
+              static_cast<int>(mesh.positions.size()) - training);
+    const std::set<std::size_t> skipped = trained(truth.size(), static_cast<std::size_t>(training));
     double squared = 0, wrong = 0, texels = 0;
     for (std::size_t v = 0; v < truth.size(); ++v) {
+      if (skipped.contains(v)) continue;
       const std::vector<double> ssdf = reconstruct(transfer, v);
       for (std::size_t i = 0; i < ssdf.size(); ++i, ++texels) {
-        squared += (ssdf[i] - truth[v][i]) * (ssdf[i] - truth[v][i]);
+        const double error = within_right_angle(ssdf[i]) - within_right_angle(truth[v][i]);
+        squared += error * error;
         wrong += ssdf[i] * truth[v][i] < 0;
       }
     }
@@ -169,9 +203,50 @@ TEST(Bake, ResidualIsThatOfTheReconstruction) {
     EXPECT_NEAR(transfer.provenance.residual_rms_rad / rms, 1, 1e-4);  // float sums
     EXPECT_NEAR(transfer.provenance.wrong_sign_fraction, wrong / texels, 3 / texels);
     // Compression to 12 terms has to earn its keep: SSDFs are about 0.8 rad rms.
-    EXPECT_LT(rms, training ? 0.12 : 0.1);
+    EXPECT_LT(rms, training ? 0.13 : 0.1);
     EXPECT_LT(wrong / texels, 0.1);
   }
+}
+
+// With as many terms as harmonics, what is left is the harmonics that a ladder does not have, of
+// which these lobes see less than 1e-3, and the 64^2 quadrature of those that it has.
+TEST(Bake, LadderGivesTheVisibleShareOfWideLobes) {
+  const TriangleMesh mesh = make_scene();
+  BakeOptions options = kSmall;
+  options.ladder_terms = 400;
+  options.training_vertices = 0;
+  const Transfer transfer = bake(mesh, {}, options);
+  ASSERT_EQ(transfer.ladder_bases.size(), 1u);
+  const LadderBasis& basis = transfer.ladder_bases[0];
+  const RayScene scene = make_ray_scene(mesh, {});
+  const DirectionTable directions(64);
+  VisibilityMask mask(64);
+  for (const std::size_t v : {0u, 60u, 150u, 300u}) {
+    sample_visibility(scene, directions, mesh.positions[v], mesh.normals[v], mask);
+    const VisibilityHarmonics visibility =
+        reconstruct_harmonics(basis, transfer.vertex_ladder_coefficients(v));
+    for (const float bandwidth : {0.5f, 1.0f, 3.0f, 8.0f})
+      for (const int texel : {70, 1000, 2080, 3333}) {
+        const Vector3f axis = directions.direction(texel % 64, texel / 64);
+        EXPECT_NEAR(visible_fraction(visibility, axis, lobe_bands(bandwidth)),
+                    exact_visible_fraction(mask, axis, static_cast<double>(bandwidth)), 3e-3)
+            << "vertex " << v << ", bandwidth " << bandwidth << ", texel " << texel;
+      }
+  }
+}
+
+TEST(Bake, SeveralBasesReconstructBetter) {
+  const TriangleMesh mesh = make_scene();
+  BakeOptions options = kSmall;
+  options.terms = 6;
+  const Transfer one = bake(mesh, {}, options);
+  options.bases = 4;
+  const Transfer four = bake(mesh, {}, options);
+  ASSERT_EQ(four.bases.size(), 4u);
+  std::array<int, 4> used = {};
+  for (const std::uint8_t id : four.basis_id) ++used.at(id);
+  for (const int count : used) EXPECT_GT(count, 0);
+  EXPECT_LT(four.provenance.residual_rms_rad, 0.8 * one.provenance.residual_rms_rad);
 }
 
 TEST(Bake, SameBytesOnAnyNumberOfThreads) {
@@ -197,7 +272,8 @@ TEST(Bake, SizeOfTheMeshDoesNotMatter) {
   for (const float scale : {1e-6f, 1e6f, 0x1p-20f}) {
     SCOPED_TRACE(testing::Message() << "scale " << scale);
     const Transfer scaled = bake(make_scene(scale), {}, options);
-    EXPECT_EQ(scaled.provenance.rays, unit.provenance.rays);
+    EXPECT_NEAR(double(scaled.provenance.rays), double(unit.provenance.rays),
+                scale == 0x1p-20f ? 0 : 1e-3 * double(unit.provenance.rays));
     ASSERT_EQ(scaled.coefficients.size(), unit.coefficients.size());
     double squared = 0, all = 0, worst = 0;
     for (std::size_t i = 0; i < unit.coefficients.size(); ++i) {
@@ -227,7 +303,7 @@ TEST(Bake, OccludersShadowAndAreKept) {
   test::add_quad(lids[1], {0, -100, 0.5f}, {100, 0, 0}, {0, 200, 0});
   for (TriangleMesh& lid : lids) test::complete(lid);
   const Transfer open = bake(floor, {}, kSmall), covered = bake(floor, lids, kSmall);
-  EXPECT_GT(*std::max_element(open.bases[0].mean.begin(), open.bases[0].mean.end()), 1.0f);
+  EXPECT_TRUE(open.bases.empty());
   // Light still comes in under the rim of the lids, 0.5 above and 99 away.
   EXPECT_LT(*std::max_element(covered.bases[0].mean.begin(), covered.bases[0].mean.end()), 0.06f);
   EXPECT_EQ(covered.positions.size(), 4u);
@@ -262,11 +338,20 @@ TEST(Bake, ProvenanceTellsWhatWasBaked) {
   EXPECT_EQ(std::stoull(provenance.mesh_hash, nullptr, 16), hash);
   EXPECT_EQ(provenance.mesh_hash.size(), 16u);
 
-  // Every direction strictly above a vertex's horizon, and no other, is one ray.
+  // Every direction strictly above a vertex's horizon, and no other, is one ray; none where the
+  // whole mesh lies below the horizon.
   std::uint64_t rays = 0;
   const DirectionTable directions(64);
-  for (const Vector3f& n : mesh.normals)
+  const RayScene scene = make_ray_scene(mesh, {});
+  EXPECT_EQ(provenance.origin_offset, double(scene.origin_offset()));
+  for (std::size_t v = 0; v < mesh.normals.size(); ++v) {
+    const Vector3f& n = mesh.normals[v];
+    const float height = n.dot(mesh.positions[v] + scene.origin_offset() * n);
+    if (std::all_of(mesh.positions.begin(), mesh.positions.end(),
+                    [&](const Vector3f& p) { return n.dot(p) < height; }))
+      continue;
     for (int i = 0; i < 64 * 64; ++i) rays += n.dot(directions.direction(i % 64, i / 64)) > 0;
+  }
   // Directions within rounding of a horizon may go either way.
   EXPECT_NEAR(double(provenance.rays), double(rays), 5);
 
@@ -308,7 +393,7 @@ TEST(Bake, ProgressCountsEveryStageFromOneThreadAtATime) {
   std::atomic<int> inside = 0;
   std::vector<std::string> stages;
   std::vector<std::uint64_t> last, totals;
-  bake(mesh, {}, options, [&](std::string_view stage, std::uint64_t done, std::uint64_t total) {
+  const Progress progress = [&](std::string_view stage, std::uint64_t done, std::uint64_t total) {
     EXPECT_EQ(inside.fetch_add(1), 0);
     if (stages.empty() || stages.back() != stage) {
       stages.emplace_back(stage);
@@ -320,11 +405,12 @@ TEST(Bake, ProgressCountsEveryStageFromOneThreadAtATime) {
     last.back() = done;
     inside.fetch_sub(1);
     return true;
-  });
+  };
+  bake(mesh, {}, options, {.progress = progress});
   EXPECT_EQ(stages, (std::vector<std::string>{"train", "basis", "bake"}));
   ASSERT_EQ(totals.size(), 3u);
   EXPECT_EQ(totals[0], 50u);
-  EXPECT_EQ(totals[2], mesh.positions.size() - 50);
+  EXPECT_EQ(totals[2], mesh.positions.size());
   EXPECT_EQ(last[0], totals[0]);
   EXPECT_EQ(last[1], totals[1]);
   EXPECT_EQ(last[2], totals[2]);
@@ -343,7 +429,8 @@ TEST(Bake, StopsPromptlyWhenAskedTo) {
         stopped = stopped || (stage == stop && done >= at);
         return !stopped;
       };
-      EXPECT_THROW(bake(mesh, {}, options, progress), Cancelled) << stop << " at " << at;
+      EXPECT_THROW(bake(mesh, {}, options, {.progress = progress}), Cancelled)
+          << stop << " at " << at;
       EXPECT_TRUE(stopped);
       EXPECT_EQ(calls_after, 0);
     }
@@ -362,6 +449,14 @@ TEST(Bake, RejectsOptionsOutOfRange) {
            {.directions = 64, .resolution = 24},
            {.directions = 64, .resolution = 16, .terms = 0},
            {.directions = 64, .resolution = 16, .terms = 257},
+           {.directions = 64, .coarsest = 8, .resolution = 16},
+           {.directions = 64, .coarsest = 48, .resolution = 16},
+           {.directions = 64, .origin_offset = -1, .resolution = 16},
+           {.directions = 64, .resolution = 16, .terms = 12, .bases = 257},
+           {.directions = 64, .resolution = 16, .terms = 12, .bases = -1},
+           {.directions = 64, .resolution = 16, .terms = 12, .target_error = -0.1},
+           {.directions = 64, .resolution = 16, .terms = 12, .ladder_terms = -1},
+           {.directions = 64, .resolution = 16, .terms = 12, .residual_vertices = 0},
            {.directions = 64, .resolution = 16, .terms = 12, .training_vertices = -1}})
     EXPECT_THROW(bake(mesh, {}, options), Error)
         << options.directions << " " << options.resolution << " " << options.terms << " "

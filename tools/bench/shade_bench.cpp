@@ -54,8 +54,9 @@ BenchRow bench_look(const Options& options, const ProceduralScene& scene, const 
   row["ns_per_vertex"] = timing.median_s * 1e9 / vertices;
   row["vertices_per_s"] = vertices / timing.median_s;
   row["coefficient_bytes"] = transfer.coefficients.size() * sizeof(float);
-  row.update(
-      error_report(vertex_error(subject, studio, eye, options.shading, options.subject, work)));
+  if (options.subject.reference_samples > 0)
+    row.update(
+        error_report(vertex_error(subject, studio, eye, options.shading, options.subject, work)));
   return row;
 }
 
@@ -64,7 +65,8 @@ void run(const Options& options) {
   require_writable(std::vector{options.bench.json, options.bench.csv});
   Work work(options.bench.common());
   const ProceduralScene scene = load_subject(options.subject.name);
-  const Transfer transfer = bake(scene.mesh, {}, options.subject.bake, work.progress());
+  const Transfer transfer =
+      bake(scene.mesh, {}, options.subject.bake, {.progress = work.progress()});
   const StudioLight studio = make_studio_light(options.shading, work);
   std::vector<BenchRow> rows;
   for (const Look& look : looks_of(scene))

@@ -18,8 +18,8 @@ void add_subject_options(CLI::App& app, SubjectOptions& options) {
   add_file(app, "SCENE", "SCENE|MESH", options.name,
            fmt::format("a built-in scene ({}) or a mesh file (default {})", names, options.name));
   add_bake_options(app, options.bake);
-  add_number(app, "--reference", "SPP", options.reference_samples, {1, 1 << 20, "samples a vertex"},
-             "of the truth that the error is against");
+  add_number(app, "--reference", "SPP", options.reference_samples, {0, 1 << 20, "samples a vertex"},
+             "of the truth that the error is against; 0 for none");
   add_number(app, "--seed", "N", options.seed, "of the truth's random numbers");
 }
 

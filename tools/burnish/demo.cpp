@@ -46,7 +46,8 @@ struct Options {
 Transfer bake_scene(const Options& options, const ProceduralScene& scene, Work& work,
                     nlohmann::ordered_json& report) {
   BakeTimings timings;
-  const Transfer transfer = bake(scene.mesh, {}, options.bake, work.progress(), &timings);
+  const Transfer transfer =
+      bake(scene.mesh, {}, options.bake, {.progress = work.progress(), .timings = &timings});
   throw_if_interrupted();
   write_transfer(transfer, options.file(".h5"));
   const std::uint64_t bytes = std::filesystem::file_size(options.file(".h5"));

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include "common/command.h"
 #include "version.h"
@@ -30,6 +31,12 @@ std::string cpu_isa() {
   return "neon";
 #endif
   return "baseline";
+}
+
+std::uint64_t peak_memory_bytes() {
+  struct rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
 nlohmann::ordered_json machine_record(int threads) {

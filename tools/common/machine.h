@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -12,6 +13,9 @@ std::string cpu_model();
 /// The widest SIMD extension of the processor that this program may dispatch to: "avx512", "avx2",
 /// "sse4.2", "neon" or "baseline".
 std::string cpu_isa();
+
+/// The most memory that this process has held so far.
+std::uint64_t peak_memory_bytes();
 
 /// What every figure must be read with: machine, ISA, threads, compiler, version, commit and
 /// command line.

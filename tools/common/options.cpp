@@ -28,6 +28,23 @@ std::string range_text(const Range<T>& range) {
                      range.power_of_two ? ", a power of two" : "");
 }
 
+template <class T>
+CLI::Option* add_real(CLI::App& app, const std::string& flags, const std::string& placeholder,
+                      T& value, const Range<T>& range, const std::string& text) {
+  const std::string accepted = range_text(range);
+  const auto parse = [&value, range](const std::string& found) {
+    const std::optional<double> number = parse_number(found);
+    if (!number) return false;
+    const auto rounded = static_cast<T>(*number);
+    if (!(rounded >= range.minimum && rounded <= range.maximum)) return false;
+    value = rounded;
+    return true;
+  };
+  return add_parsed(app, flags, placeholder,
+                    fmt::format("{}; {} (default {})", text, accepted, value),
+                    "a number in " + accepted, parse);
+}
+
 }  // namespace
 
 std::optional<long long> parse_integer(std::string_view text) {
@@ -81,18 +98,12 @@ CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::stri
 
 CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,
                         float& value, const Range<float>& range, const std::string& text) {
-  const std::string accepted = range_text(range);
-  const auto parse = [&value, range](const std::string& found) {
-    const std::optional<double> number = parse_number(found);
-    if (!number) return false;
-    const auto rounded = static_cast<float>(*number);
-    if (!(rounded >= range.minimum && rounded <= range.maximum)) return false;
-    value = rounded;
-    return true;
-  };
-  return add_parsed(app, flags, placeholder,
-                    fmt::format("{}; {} (default {})", text, accepted, value),
-                    "a number in " + accepted, parse);
+  return add_real(app, flags, placeholder, value, range, text);
+}
+
+CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,
+                        double& value, const Range<double>& range, const std::string& text) {
+  return add_real(app, flags, placeholder, value, range, text);
 }
 
 CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,

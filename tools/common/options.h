@@ -47,6 +47,8 @@ CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::stri
 CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,
                         float& value, const Range<float>& range, const std::string& text);
 CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,
+                        double& value, const Range<double>& range, const std::string& text);
+CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,
                         std::uint64_t& value, const std::string& text);
 /// @}
 

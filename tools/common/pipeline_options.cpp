@@ -8,12 +8,37 @@ namespace burnish::tools {
 void add_bake_options(CLI::App& app, BakeOptions& options) {
   add_number(app, "--directions", "N", options.directions, {64, 1024, "", true},
              "visibility is sampled on N x N directions");
+  add_choice(app, "--coarsest", options.coarsest,
+             {{"16", 16}, {"32", 32}, {"64", 64}, {"128", 128}, {"256", 256}, {"all", 1024}},
+             "rays go into N x N directions first, and into finer ones where visibility changes");
+  add_number(app, "--origin-offset", "A", options.origin_offset, {0, 1e30, "world units"},
+             "rays leave a vertex this far along its normal, 0 for 2^-16 of the scene");
   add_number(app, "--resolution", "N", options.resolution, {16, 1024, "", true},
              "signed distances are stored on N x N texels, at most --directions");
   add_number(app, "--terms", "N", options.terms, {1, 1024},
              "PCA coefficients of a vertex: more are finer and slower");
+  add_number(app, "--amplitude", "A", options.amplitude_rad, {0, 100, "radians"},
+             "signed distances are compressed as tanh(distance / A), 0 for as they are");
+  add_number(app, "--bases", "N", options.bases, {0, 256},
+             "PCA bases, each vertex in one of them: more are finer, not slower; 0 to choose by "
+             "their error");
+  add_number(app, "--target-error", "A", options.target_error, {0, 1},
+             "take the fewest terms and bases, up to --terms and --bases, for this error of a "
+             "lobe's visibility at bandwidth 128; 0 to take them all");
+  add_number(app, "--ladder-terms", "N", options.ladder_terms, {0, 1024},
+             "coefficients of a vertex for wide lobes, 0 to leave them to the signed distances");
   add_number(app, "--training-vertices", "N", options.training_vertices, {0, 1 << 30},
-             "vertices the PCA basis is trained on, 0 for all");
+             "vertices the PCA bases are trained on, 0 for all");
+  add_number(app, "--residual-vertices", "N", options.residual_vertices, {1, 1 << 16},
+             "vertices that errors are measured on");
+}
+
+void add_coefficient_option(CLI::App& app, WriteTransferOptions& options) {
+  add_choice(app, "--coefficients", options.coefficient_type,
+             {{"float32", CoefficientType::float32},
+              {"float16", CoefficientType::float16},
+              {"int16", CoefficientType::int16}},
+             "how coefficients and eigenimages are stored");
 }
 
 void check_bake_options(const BakeOptions& options) {

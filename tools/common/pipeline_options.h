@@ -2,13 +2,17 @@
 
 #include <CLI/CLI.hpp>
 
+#include "burnish/formats/transfer_file.h"
 #include "burnish/precompute/bake.h"
 #include "burnish/shading/shade.h"
 
 namespace burnish::tools {
 
-/// Declares --directions, --resolution, --terms and --training-vertices.
+/// Declares the dials of a bake.
 void add_bake_options(CLI::App& app, BakeOptions& options);
+
+/// Declares --coefficients.
+void add_coefficient_option(CLI::App& app, WriteTransferOptions& options);
 
 /// Throws UsageError where they contradict each other. For before anything is read.
 void check_bake_options(const BakeOptions& options);

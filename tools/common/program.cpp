@@ -52,9 +52,9 @@ int run_guarded(const std::string& name, const std::function<void()>& work) {
     return fail(name, error.what(), kExitUsage);
   } catch (const CheckFailed& error) {
     return fail(name, error.what(), kExitCheck);
-  } catch (const Cancelled&) {
+  } catch (const Cancelled& cancelled) {
     const int signal_number = interrupted();
-    return fail(name, "interrupted", 128 + signal_number);
+    return fail(name, cancelled.what(), 128 + signal_number);
   } catch (const Error& error) {
     return fail(name, error.what(), exit_code(error.kind()));
   } catch (const std::bad_alloc&) {

@@ -1,6 +1,7 @@
 #include "harness/procedural_scenes.h"
 
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -77,19 +78,24 @@ ProceduralScene wall() {
   return scene;
 }
 
-ProceduralScene knot() {
+// `fineness`: of all edges.
+ProceduralScene knot_scene(double fineness) {
+  const auto cells = [&](int count) { return static_cast<int>(std::lround(count * fineness)); };
   ProceduralScene scene;
-  append_torus_knot(scene.mesh, Vector3f(0, 0.62f, 0), 1.0, 0.4, 0.18, 1100, 40);
+  append_torus_knot(scene.mesh, Vector3f(0, 0.62f, 0), 1.0, 0.4, 0.18, cells(1100), cells(40));
   paint(scene, {.diffuse = Rgb(0.25f, 0.1f, 0.06f),
                 .specular = Rgb(0.3f, 0.3f, 0.3f),
                 .model = SpecularModel::ward,
                 .alpha_x = 0.1f,
                 .alpha_y = 0.2f});
-  append_floor(scene.mesh, 3.0, 99, 0.5);
+  append_floor(scene.mesh, 3.0, cells(99), 0.5);
   paint(scene, diffuse(kFloorAlbedo));
   scene.camera = {Vector3f(0.0f, 2.9f, 3.6f), Vector3f(0, 0.35f, 0), Vector3f::UnitY(), 42};
   return scene;
 }
+
+constexpr int kKnotVertices = 54000;
+ProceduralScene knot() { return knot_scene(1); }
 
 constexpr std::array<std::pair<const char*, ProceduralScene (*)()>, 5> kScenes = {
     {{"dish", dish}, {"sphere", sphere}, {"plane", plane}, {"wall", wall}, {"knot", knot}}};
@@ -112,6 +118,16 @@ ProceduralScene make_scene(std::string_view name) {
   throw Error(
       ErrorKind::input, std::string(name),
       fmt::format("no such procedural scene, expected one of {}", fmt::join(scene_names(), ", ")));
+}
+
+ProceduralScene make_knot(int vertices) {
+  constexpr int kFewest = 1000, kMost = 20'000'000;
+  if (vertices < kFewest || vertices > kMost)
+    throw Error(ErrorKind::input, "knot",
+                fmt::format("{} vertices, expected {}..{}", vertices, kFewest, kMost));
+  ProceduralScene scene = knot_scene(std::sqrt(double(vertices) / kKnotVertices));
+  scene.name = scene.mesh.name = "knot";
+  return scene;
 }
 
 }  // namespace burnish

@@ -32,4 +32,7 @@ std::vector<std::string> scene_names();
 /// Throws Error for a name that scene_names() does not have.
 ProceduralScene make_scene(std::string_view name);
 
+/// The knot in about as many vertices (1000..20 million): how cost grows with a mesh.
+ProceduralScene make_knot(int vertices);
+
 }  // namespace burnish

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <functional>
 #include <stdexcept>
+#include <string>
 #include <string_view>
 
 namespace burnish {
@@ -16,7 +17,8 @@ using Progress =
 /// Thrown by work that its Progress asked to stop.
 class Cancelled : public std::runtime_error {
  public:
-  Cancelled() : std::runtime_error("cancelled") {}
+  /// `what`: for a person, with how to go on if there is a way.
+  explicit Cancelled(const std::string& what = "interrupted") : std::runtime_error(what) {}
 };
 
 }  // namespace burnish
