@@ -28,7 +28,7 @@ constexpr std::size_t kBlock = 32;
 // Kinds of journal records; the index is the block's. What was trained is not noted: from the
 // training set's masks it comes out the same again.
 constexpr std::uint32_t kTrainingRecord = 1;  // BlockState and masks
-constexpr std::uint32_t kResultRecord = 2;    // BlockState and coefficients
+constexpr std::uint32_t kResultRecord = 2;    // the bases' fingerprint, BlockState, coefficients
 
 using Clock = std::chrono::steady_clock;
 double seconds_since(Clock::time_point start) {
@@ -120,8 +120,9 @@ class Bake {
 Transfer Bake::bake() {
   copy_meshes();
   describe();
-  if (nothing_occludes()) return std::move(transfer_);
   open_journal();
+  if (nothing_occludes()) return std::move(transfer_);
+  transfer_.provenance.training_vertices = static_cast<int>(roles_.training.size());
   trace_training();
   trace_measured();
   train();
@@ -138,6 +139,11 @@ Transfer Bake::bake() {
     transfer_.basis_id.clear();
     transfer_.coefficients.clear();
     transfer_.ladder_coefficients.clear();
+    Provenance& provenance = transfer_.provenance;
+    provenance.training_vertices = provenance.residual_vertices = 0;
+    provenance.residual_rms_rad = provenance.wrong_sign_fraction = 0;
+    provenance.ssdf_errors.clear();
+    provenance.ladder_errors.clear();
   }
   return std::move(transfer_);
 }
@@ -289,6 +295,7 @@ void Bake::project_block(std::size_t block, BakeWorker& worker) {
   copy_to_transfer(vertices, result);
   if (!run_.journal) return;
   ByteWriter record;
+  record.put(model_->fingerprint());
   record.put(states_[block]);
   result.write(record);
   run_.journal->append(kResultRecord, static_cast<std::uint32_t>(block), record.bytes());
@@ -297,6 +304,8 @@ void Bake::project_block(std::size_t block, BakeWorker& worker) {
 bool Bake::recall_result(std::size_t block) {
   if (recalled_results_[block].empty()) return false;
   ByteReader record(recalled_results_[block]);
+  // Coefficients of other bases (another processor's or library's rounding) would mean nothing.
+  if (record.get<std::uint64_t>() != model_->fingerprint()) return false;
   BlockCoefficients result(vertices_of(block).size(), *model_);
   const auto state = record.get<BlockState>();
   result.read(record);
@@ -335,7 +344,10 @@ void Bake::copy_meshes() {
   for (const TriangleMesh& occluder : occluders_) {
     const std::size_t first = transfer_.occluder_positions.size();
     if (first + occluder.positions.size() > std::numeric_limits<std::uint32_t>::max())
-      throw Error(ErrorKind::input, "bake", "the occluders have more than 2^32 vertices together");
+      throw Error(ErrorKind::input, "bake",
+                  fmt::format("the occluders have {} or more vertices together, expected at most "
+                              "2^32 - 1",
+                              first + occluder.positions.size()));
     transfer_.occluder_positions.insert(transfer_.occluder_positions.end(),
                                         occluder.positions.begin(), occluder.positions.end());
     for (Triangle triangle : occluder.triangles) {
@@ -355,7 +367,6 @@ void Bake::describe() {
   provenance.directions = options_.directions;
   provenance.coarsest = std::min(options_.coarsest, options_.directions);
   provenance.origin_offset = station_.origin_offset();
-  provenance.training_vertices = static_cast<int>(roles_.training.size());
 }
 
 // The scene of the run, or one that is made for it.

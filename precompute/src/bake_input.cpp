@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "burnish/formats/error.h"
+#include "burnish/formats/transfer_file.h"
 #include "fnv1a.h"
 
 namespace burnish {
@@ -55,12 +56,13 @@ void check_bake_options(const BakeOptions& options) {
   check_range("directions", options.directions, 64, 1024, true);
   check_range("coarsest", options.coarsest, 16, 1024, true);
   check_range("resolution", options.resolution, 16, options.directions, true);
-  check_range("terms", options.terms, 1, options.resolution * options.resolution);
+  check_range("terms", options.terms, 1,
+              std::min(kMaxTerms, options.resolution * options.resolution));
   check_not_negative("amplitude", options.amplitude_rad);
   check_range("bases", options.bases, 0, 256);
   check_range("ladder terms", options.ladder_terms, 0, 1024);
   check_range("training vertices", options.training_vertices, 0, 1 << 30);
-  check_range("residual vertices", options.residual_vertices, 1, 1 << 16);
+  check_range("residual vertices", options.residual_vertices, 1, 4096);
   check_not_negative("origin offset", options.origin_offset);
   check_not_negative("target error", options.target_error);
 }

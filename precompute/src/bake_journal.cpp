@@ -81,6 +81,16 @@ BakeJournal::BakeJournal(std::string path) : path_(std::move(path)) {
       throw Error(ErrorKind::output, path_, "is in use by another bake of the same output");
     fail("be locked", number);
   }
+  // Another file of that name is not ours to empty.
+  std::uint32_t magic = kMagic;
+  if (read_all(descriptor_, &magic, sizeof(magic)) && magic != kMagic) {
+    ::close(descriptor_);
+    descriptor_ = -1;
+    throw Error(ErrorKind::input, path_,
+                fmt::format("is not the journal of a bake: it begins with {:08x}, expected {:08x}",
+                            magic, kMagic));
+  }
+  ::lseek(descriptor_, 0, SEEK_SET);
   Record facts;
   holds_work_ = read_record(facts) && facts.kind == kFactsKind;
 }
@@ -125,7 +135,8 @@ void BakeJournal::resume(const Facts& facts, const std::function<void(Record&&)>
   ::lseek(descriptor_, 0, SEEK_SET);
   Record record;
   if (!read_record(record) || record.kind != kFactsKind)
-    throw Error(ErrorKind::input, path_, "does not hold the beginning of a bake");
+    throw Error(ErrorKind::input, path_,
+                "holds no facts in its first record, expected those of a bake");
   const std::string found(reinterpret_cast<const char*>(record.payload.data()),
                           record.payload.size());
   for (const auto& [name, value] : facts)
@@ -134,7 +145,8 @@ void BakeJournal::resume(const Facts& facts, const std::function<void(Record&&)>
           ErrorKind::input, path_,
           fmt::format("was begun with another {}: found {}, expected {}", name, old, value));
   if (found != facts_text(facts))
-    throw Error(ErrorKind::input, path_, "was begun by another version of burnish");
+    throw Error(ErrorKind::input, path_,
+                "holds facts that this version of burnish does not know, expected its own");
   off_t good = ::lseek(descriptor_, 0, SEEK_CUR);
   while (read_record(record)) {
     good = ::lseek(descriptor_, 0, SEEK_CUR);
@@ -165,7 +177,7 @@ void BakeJournal::append(std::uint32_t kind, std::uint32_t index,
 }
 
 void BakeJournal::remove() {
-  if (::unlink(path_.c_str()) != 0) fail("be removed", errno);
+  if (::unlink(path_.c_str()) != 0 && errno != ENOENT) fail("be removed", errno);
   ::close(descriptor_);
   descriptor_ = -1;
   holds_work_ = false;

@@ -10,6 +10,7 @@
 #include "burnish/precompute/coverage.h"
 #include "burnish/precompute/lobe_visibility_error.h"
 #include "burnish/visibility/ssdf.h"
+#include "fnv1a.h"
 
 namespace burnish {
 namespace {
@@ -90,12 +91,21 @@ BakeModel::BakeModel(const VisibilityRows& training, const VisibilityRows& measu
   projector_.emplace(bases);
   for (const PcaBasis& basis : bases) bases_.push_back(to_ssdf_basis(basis, options));
   timings.basis_s = seconds_since(start);
-  if (options.ladder_terms == 0) return;
-  const Clock::time_point ladder_start = Clock::now();
-  LadderOptions ladder;
-  ladder.terms = options.ladder_terms;
-  ladders_ = train_ladders(training.coverage(0, training.size()), ladder);
-  timings.ladder_s = seconds_since(ladder_start);
+  if (options.ladder_terms > 0) {
+    const Clock::time_point ladder_start = Clock::now();
+    LadderOptions ladder;
+    ladder.terms = options.ladder_terms;
+    ladders_ = train_ladders(training.coverage(0, training.size()), ladder);
+    timings.ladder_s = seconds_since(ladder_start);
+  }
+  Fnv1a hash;
+  const auto add = [&](const auto& basis) {
+    hash.add(std::span<const float>(basis.mean));
+    hash.add(std::span<const float>(basis.eigen));
+  };
+  for (const SsdfBasis& basis : bases_) add(basis);
+  for (const VisibilityLadder& ladder : ladders_) add(ladder.basis);
+  fingerprint_ = hash.value();
 }
 
 void BakeModel::project(const VisibilityRows& rows, std::size_t first, BlockCoefficients& result,

@@ -74,6 +74,9 @@ class BakeModel {
   void project(const VisibilityRows& rows, std::size_t first, BlockCoefficients& result,
                Scratch& scratch) const;
 
+  /// A hash of all bases: equal for those that coefficients can be exchanged between.
+  std::uint64_t fingerprint() const { return fingerprint_; }
+
   /// The bases, and where the ladder ends.
   void write_bases(Transfer& transfer) const;
 
@@ -83,6 +86,7 @@ class BakeModel {
   std::optional<ClusteredProjector> projector_;
   std::vector<VisibilityLadder> ladders_;  // none, or one
   float ladder_crossover_ = 0;
+  std::uint64_t fingerprint_ = 0;
 };
 
 }  // namespace burnish

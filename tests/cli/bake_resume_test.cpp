@@ -79,7 +79,10 @@ TEST(BakeResume, KilledAtRandomMomentsItEndsInTheSameBytes) {
     }
     ++kills;
     ASSERT_EQ(result.err, "") << "it ended by itself";
-    ASSERT_EQ(read_whole_file(folder.file("killed.h5")), "old");
+    // Killed after the file took its name, the bake is done but for its journal.
+    const std::string left = read_whole_file(folder.file("killed.h5"));
+    ASSERT_TRUE(left == "old" || left == expected);
+    write_whole_file(folder.file("killed.h5"), "old");
   }
   EXPECT_GT(resumed, 5);
   std::vector<std::string> last = bake_of(folder, "killed.h5");
@@ -88,7 +91,7 @@ TEST(BakeResume, KilledAtRandomMomentsItEndsInTheSameBytes) {
   EXPECT_EQ(read_whole_file(folder.file("killed.h5")), expected);
 }
 
-/// Runs with files of at most `blocks` of 512 bytes: the stand-in for a full disk.
+/// Runs under a `limit` of the shell's ulimit. Files of limited size stand in for a full disk.
 RunResult run_limited(const std::string& limit, const std::vector<std::string>& arguments) {
   return run_program(
       "/bin/sh",

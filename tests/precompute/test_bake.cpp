@@ -31,7 +31,7 @@ constexpr BakeOptions kSmall{.directions = 64,
                              .amplitude_rad = 0,
                              .bases = 1,
                              .ladder_terms = 10,
-                             .residual_vertices = 1 << 16};
+                             .residual_vertices = 4096};
 
 // A wavy floor with a sphere over it, turned so that nothing is aligned with anything.
 TriangleMesh make_scene(float scale = 1) {
@@ -457,6 +457,10 @@ TEST(Bake, RejectsOptionsOutOfRange) {
            {.directions = 64, .resolution = 16, .terms = 12, .target_error = -0.1},
            {.directions = 64, .resolution = 16, .terms = 12, .ladder_terms = -1},
            {.directions = 64, .resolution = 16, .terms = 12, .residual_vertices = 0},
+           {.directions = 64, .resolution = 16, .terms = 12, .residual_vertices = 4097},
+           {.directions = 64, .resolution = 64, .terms = 1025},
+           {.directions = 64, .resolution = 16, .terms = 12, .amplitude_rad = -1},
+           {.directions = 64, .resolution = 16, .terms = 12, .ladder_terms = 1025},
            {.directions = 64, .resolution = 16, .terms = 12, .training_vertices = -1}})
     EXPECT_THROW(bake(mesh, {}, options), Error)
         << options.directions << " " << options.resolution << " " << options.terms << " "

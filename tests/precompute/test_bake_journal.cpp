@@ -117,7 +117,7 @@ TEST_F(Journal, StopsAtARecordThatIsDamaged) {
       ASSERT_LT(count, 5u) << "byte " << byte;
       at_most = std::max(at_most, count);
     } catch (const Error& error) {
-      ASSERT_NE(std::string(error.what()).find("beginning of a bake"), std::string::npos);
+      ASSERT_NE(std::string(error.what()).find("expected "), std::string::npos);
     }
   }
   EXPECT_EQ(at_most, 4u);
@@ -142,7 +142,7 @@ TEST_F(Journal, RefusesOtherFactsByName) {
   EXPECT_EQ(error_of_resume({{"mesh", "0123"}, {"terms", "48"}, {"bases", "8"}}),
             path() + ": was begun with another bases: found nothing, expected 8");
   EXPECT_EQ(error_of_resume({{"mesh", "0123"}}),
-            path() + ": was begun by another version of burnish");
+            path() + ": holds facts that this version of burnish does not know, expected its own");
 }
 
 TEST_F(Journal, KnowsWhetherItHoldsWork) {
@@ -161,6 +161,13 @@ TEST_F(Journal, KnowsWhetherItHoldsWork) {
 TEST_F(Journal, IsLockedWhileOpen) {
   const BakeJournal journal(path());
   EXPECT_THROW(BakeJournal second(path()), Error);
+}
+
+TEST_F(Journal, LeavesOtherFilesAlone) {
+  std::ofstream(path()) << "a diary";
+  EXPECT_THROW(BakeJournal{path()}, Error);
+  std::ifstream file(path());
+  EXPECT_EQ(std::string((std::istreambuf_iterator<char>(file)), {}), "a diary");
 }
 
 TEST_F(Journal, RefusesAFolder) { EXPECT_THROW(BakeJournal(folder_.string()), Error); }

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <random>
 #include <string>
 #include <vector>
@@ -143,7 +144,7 @@ TEST_F(BakeResume, OtherThreadsGoOnToTheSameBytes) {
   }
 }
 
-TEST_F(BakeResume, CastsNoRayTwice) {
+TEST_F(BakeResume, CastsNoRayOfAFinishedBlockAgain) {
   BakeTimings whole, none;
   Transfer transfer;
   ASSERT_TRUE(run(false, kForever, &transfer, &whole));
@@ -170,6 +171,21 @@ TEST_F(BakeResume, OtherInputsAreRefusedByName) {
   options.terms = 7;
   EXPECT_EQ(error_of(mesh_, options),
             journal_path() + ": was begun with another number of terms: found 6, expected 7");
+  using Change = void (*)(BakeOptions&);
+  for (const Change change : std::initializer_list<Change>{
+           [](BakeOptions& o) { o.directions = 128; }, [](BakeOptions& o) { o.coarsest = 64; },
+           [](BakeOptions& o) { o.origin_offset = 0.1; }, [](BakeOptions& o) { o.resolution = 32; },
+           [](BakeOptions& o) { o.amplitude_rad = 0.5; }, [](BakeOptions& o) { o.bases = 1; },
+           [](BakeOptions& o) { o.target_error = 0.5; }, [](BakeOptions& o) { o.ladder_terms = 6; },
+           [](BakeOptions& o) { o.training_vertices = 151; },
+           [](BakeOptions& o) { o.residual_vertices = 21; }}) {
+    options = kOptions;
+    change(options);
+    EXPECT_NE(error_of(mesh_, options).find("was begun with another"), std::string::npos);
+  }
+  const TriangleMesh convex = test::make_sphere({0, 0, 0}, 0.5f, 8);
+  EXPECT_NE(error_of(convex, kOptions).find("another mesh"), std::string::npos)
+      << "though nothing occludes it";
   TriangleMesh mesh = mesh_;
   mesh.positions[5].x() += 1e-3f;
   EXPECT_NE(error_of(mesh, kOptions).find("another mesh"), std::string::npos);

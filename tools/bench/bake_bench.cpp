@@ -32,7 +32,10 @@ struct Options {
 /// A file name that no other process uses, removed at the end.
 class TemporaryFile {
  public:
-  ~TemporaryFile() { std::filesystem::remove(path_); }
+  ~TemporaryFile() {
+    std::error_code ignored;
+    std::filesystem::remove(path_, ignored);
+  }
   std::string path() const { return path_.string(); }
 
  private:

@@ -75,6 +75,8 @@ void check_usage(const Options& options) {
       if (is_scene_file(file))
         throw UsageError(fmt::format("{}: a scene file is baked alone, found {} inputs", file,
                                      options.meshes.size()));
+  if (options.min_edge > 0 && options.refine_error == 0)
+    throw UsageError("--min-edge: found without --refine-error, expected with it");
   if (options.resume && options.restart)
     throw UsageError("--resume and --restart contradict each other");
 }
@@ -172,12 +174,14 @@ bool resumes(const Options& options, const BakeJournal& journal, Work& work) {
 Transfer bake_with_journal(const Options& options, const SceneMeshes& scene, const RayScene& rays,
                            BakeJournal& journal, bool resume, Work& work, BakeTimings& timings) {
   try {
-    return bake(scene.receiver, scene.occluders, options.bake,
-                {.progress = work.progress(),
-                 .timings = &timings,
-                 .journal = &journal,
-                 .resume = resume,
-                 .scene = &rays});
+    Transfer transfer = bake(scene.receiver, scene.occluders, options.bake,
+                             {.progress = work.progress(),
+                              .timings = &timings,
+                              .journal = &journal,
+                              .resume = resume,
+                              .scene = &rays});
+    throw_if_interrupted();
+    return transfer;
   } catch (const Cancelled&) {
     throw Cancelled(fmt::format("interrupted; the same command with --resume{} goes on",
                                 options.restart ? " instead of --restart" : ""));
@@ -186,7 +190,6 @@ Transfer bake_with_journal(const Options& options, const SceneMeshes& scene, con
 
 void verify(const Options& options, const SceneMeshes& scene, const RayScene& rays, Work& work,
             Json& report) {
-  if (options.verify == 0) return;
   const VisibilityVerification found =
       verify_visibility(scene.receiver, scene.occluders, options.bake, options.verify, 1,
                         {.progress = work.progress(), .scene = &rays});
@@ -202,6 +205,21 @@ void verify(const Options& options, const SceneMeshes& scene, const RayScene& ra
             {"differing_fraction", share},
             {"worst_ssdf_error_rad", found.worst_ssdf_error_rad},
             {"worst_vertex", found.worst_vertex}};
+}
+
+/// Says when a target error was beyond what the terms and bases could do.
+void tell_target(const BakeOptions& options, const Transfer& transfer, Work& work, Json& report) {
+  if (options.target_error == 0 || transfer.bases.empty()) return;
+  double found = 0;
+  for (const LobeError& error : transfer.provenance.ssdf_errors)
+    if (error.bandwidth == 128) found = error.relative_rms;
+  const bool met = found <= options.target_error;
+  report["target_error_met"] = met;
+  if (!met)
+    work.print(
+        fmt::format("target error {} not met: {:.3g} at bandwidth 128 with all {} terms of {} "
+                    "bases",
+                    options.target_error, found, transfer.terms(), transfer.bases.size()));
 }
 
 void run(const Options& options) {
@@ -223,7 +241,6 @@ void run(const Options& options) {
   BakeTimings timings;
   const Transfer transfer = bake_with_journal(options, scene, rays, journal, resume, work, timings);
   timings.scene_s = scene_s;
-  throw_if_interrupted();
   const Stopwatch write_watch;
   write_transfer(transfer, options.output, options.writing);
   const double write_s = write_watch.seconds();
@@ -234,7 +251,8 @@ void run(const Options& options) {
   report["bake"]["timings"]["write_s"] = write_s;
   work.print(bake_summary(transfer, timings));
   work.print(fmt::format("{}: {}", options.output, bytes_text(static_cast<double>(bytes))));
-  verify(options, scene, rays, work, report["verification"]);
+  tell_target(options.bake, transfer, work, report["bake"]);
+  if (options.verify > 0) verify(options, scene, rays, work, report["verification"]);
   report["wall_clock_s"] = watch.seconds();
   report["peak_memory_bytes"] = peak_memory_bytes();
   report["machine"] = machine_record(work.threads());

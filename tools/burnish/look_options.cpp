@@ -109,7 +109,7 @@ Look load_look(const LookOptions& options, Work& work) {
   Look look;
   look.transfer = read_transfer(options.transfer);
   throw_if_interrupted();
-  if (options.shading.terms > look.transfer.terms())
+  if (!look.transfer.bases.empty() && options.shading.terms > look.transfer.terms())
     throw UsageError(fmt::format("--terms: found {}, expected at most the {} that {} holds",
                                  options.shading.terms, look.transfer.terms(), options.transfer));
   if (!options.environment.empty()) look.environment = load_environment(options.environment, work);

@@ -23,13 +23,13 @@ void add_bake_options(CLI::App& app, BakeOptions& options) {
              "PCA bases, each vertex in one of them: more are finer, not slower; 0 to choose by "
              "their error");
   add_number(app, "--target-error", "A", options.target_error, {0, 1},
-             "take the fewest terms and bases, up to --terms and --bases, for this error of a "
-             "lobe's visibility at bandwidth 128; 0 to take them all");
+             "take the fewest terms, up to --terms, for this error of a lobe's visibility at "
+             "bandwidth 128; 0 to take them all");
   add_number(app, "--ladder-terms", "N", options.ladder_terms, {0, 1024},
              "coefficients of a vertex for wide lobes, 0 to leave them to the signed distances");
   add_number(app, "--training-vertices", "N", options.training_vertices, {0, 1 << 30},
              "vertices the PCA bases are trained on, 0 for all");
-  add_number(app, "--residual-vertices", "N", options.residual_vertices, {1, 1 << 16},
+  add_number(app, "--residual-vertices", "N", options.residual_vertices, {1, 4096},
              "vertices that errors are measured on");
 }
 
@@ -42,6 +42,10 @@ void add_coefficient_option(CLI::App& app, WriteTransferOptions& options) {
 }
 
 void check_bake_options(const BakeOptions& options) {
+  if (options.terms > options.resolution * options.resolution)
+    throw UsageError(
+        fmt::format("--terms: found {}, expected at most the texels of --resolution, {}",
+                    options.terms, options.resolution * options.resolution));
   if (options.resolution > options.directions)
     throw UsageError(fmt::format("--resolution: found {}, expected at most --directions, {}",
                                  options.resolution, options.directions));

@@ -21,19 +21,20 @@ struct BakeOptions {
   /// Rays leave a vertex this far along its normal, in world units; 0: RayScene::origin_offset().
   double origin_offset = 0;
   int resolution = 128;  ///< SSDF texels along an edge, 16..directions, a power of two
-  int terms = 48;        ///< PCA terms, 1..resolution^2 (clamped to what the training set can give)
+  int terms =
+      48;  ///< PCA terms, 1..1024 and resolution^2 (clamped to what the training set can give)
   /// The SSDF is compressed as tanh(distance / amplitude), which spends terms on boundaries; 0: as
   /// it is.
   double amplitude_rad = 0.6;
   int bases = 8;  ///< PCA bases, 1..256, each vertex in one of them; 0: chosen by held-out error
-  /// If above 0: `terms` and `bases` are the most that may be spent, and the fewest are taken whose
-  /// error at bandwidth 128 (Provenance::ssdf_errors) is at most this.
+  /// If above 0: the fewest terms, up to `terms`, are taken whose error at bandwidth 128
+  /// (Provenance::ssdf_errors) is at most this; all of them where none is enough.
   double target_error = 0;
   int ladder_terms = 48;  ///< of the visibility ladder, 0..1024; 0: none, as in wang2009svbrdf
   /// The bases are trained on this many vertices, spread over the mesh; 0: on all. Their SSDFs are
   /// held in memory at once: 4 training_vertices resolution^2 bytes.
   int training_vertices = 8192;
-  int residual_vertices = 256;  ///< held out of the training to measure errors on, 1..65536
+  int residual_vertices = 256;  ///< held out of the training to measure errors on, 1..4096
 };
 
 /// Where the time went, and what else differs from run to run: not part of the transfer.
@@ -69,7 +70,8 @@ RayScene make_ray_scene(const TriangleMesh& receiver, std::span<const TriangleMe
 /// Bakes the visibility of every vertex of `receiver`, shadowed by itself and by the occluders:
 /// rays on the upper hemisphere of its normal, an SSDF and a visibility ladder, and their
 /// coefficients in PCA bases. Same input, same bytes, at any number of threads. Memory beyond the
-/// scene and the transfer is that of the training set.
+/// scene and the transfer: the training set, and some 5 resolution^2 bytes more for each of the
+/// residual vertices.
 ///
 /// - A vertex whose position or normal is not finite, or whose normal is zero, sees nothing that
 ///   could be shaded: its coefficients are 0 (the mean), and it counts neither for the bases nor

@@ -59,10 +59,10 @@ struct Provenance {
   std::uint64_t rays = 0;                ///< cast in all
   int residual_vertices = 0;             ///< vertices the residuals below are of
   bool residual_held_out = false;        ///< the basis was not trained on them
-  double residual_rms_rad = 0;           ///< of SSDF values, after compression
-  double wrong_sign_fraction = 0;        ///< of SSDF texels, after compression
+  double residual_rms_rad = 0;           ///< of SSDF values held to +-pi/2, after compression
+  double wrong_sign_fraction = 0;        ///< of SSDF texels, after compression; as above
   std::vector<LobeError> ssdf_errors;    ///< of lobes' visibility through the compressed SSDF
-  std::vector<LobeError> ladder_errors;  ///< ... and through the ladder, one a level
+  std::vector<LobeError> ladder_errors;  ///< ... and through the ladder
 };
 
 /// What a bake produces: the receiver mesh and the compressed visibility of each of its vertices.
