@@ -151,19 +151,4 @@ PcaBasis train_pca(RowMatrixf& data, const PcaOptions& options, const PcaProgres
   return basis;
 }
 
-PcaResidual project_pca(const PcaBasis& basis, const Eigen::Ref<const RowMatrixf>& centred,
-                        std::span<float> coefficients) {
-  Eigen::Map<RowMatrixf> weights(coefficients.data(), centred.rows(), basis.terms());
-  weights.noalias() = centred * basis.components;
-  const RowMatrixf rebuilt = weights * basis.components.transpose();
-  PcaResidual residual;
-  for (Index i = 0; i < centred.rows(); ++i) {
-    residual.squared += (centred.row(i) - rebuilt.row(i)).squaredNorm();
-    residual.wrong_signs += static_cast<std::uint64_t>(
-        ((centred.row(i) + basis.mean).array() * (rebuilt.row(i) + basis.mean).array() < 0)
-            .count());
-  }
-  return residual;
-}
-
 }  // namespace burnish

@@ -203,7 +203,7 @@ TEST(Bake, ResidualIsThatOfHeldOutVertices) {
     EXPECT_NEAR(transfer.provenance.residual_rms_rad / rms, 1, 1e-4);  // float sums
     EXPECT_NEAR(transfer.provenance.wrong_sign_fraction, wrong / texels, 3 / texels);
     // Compression to 12 terms has to earn its keep: SSDFs are about 0.8 rad rms.
-    EXPECT_LT(rms, training ? 0.13 : 0.1);
+    EXPECT_LT(rms, training ? 0.12 : 0.1);
     EXPECT_LT(wrong / texels, 0.1);
   }
 }
@@ -272,8 +272,7 @@ TEST(Bake, SizeOfTheMeshDoesNotMatter) {
   for (const float scale : {1e-6f, 1e6f, 0x1p-20f}) {
     SCOPED_TRACE(testing::Message() << "scale " << scale);
     const Transfer scaled = bake(make_scene(scale), {}, options);
-    EXPECT_NEAR(double(scaled.provenance.rays), double(unit.provenance.rays),
-                scale == 0x1p-20f ? 0 : 1e-3 * double(unit.provenance.rays));
+    EXPECT_EQ(scaled.provenance.rays, unit.provenance.rays);
     ASSERT_EQ(scaled.coefficients.size(), unit.coefficients.size());
     double squared = 0, all = 0, worst = 0;
     for (std::size_t i = 0; i < unit.coefficients.size(); ++i) {

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,22 +38,5 @@ using PcaProgress = std::function<void(int done, int total)>;
 /// it deviates by less than float rounding of the data are dropped. At least one comes back; when
 /// all rows are equal it is zero. The component of largest magnitude in each direction is positive.
 PcaBasis train_pca(RowMatrixf& data, const PcaOptions& options, const PcaProgress& progress = {});
-
-/// How far reconstructions are from the vectors they stand for.
-struct PcaResidual {
-  double squared = 0;             ///< sum over all components of all vectors
-  std::uint64_t wrong_signs = 0;  ///< components whose sign changes; one that is 0 has none
-
-  PcaResidual& operator+=(const PcaResidual& other) {
-    squared += other.squared;
-    wrong_signs += other.wrong_signs;
-    return *this;
-  }
-};
-
-/// Coefficients of centred vectors (the mean already subtracted), [vectors][terms], and what they
-/// fail to reconstruct. One thread.
-PcaResidual project_pca(const PcaBasis& basis, const Eigen::Ref<const RowMatrixf>& centred,
-                        std::span<float> coefficients);
 
 }  // namespace burnish
