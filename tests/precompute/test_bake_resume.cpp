@@ -5,6 +5,7 @@
 #include <fstream>
 #include <initializer_list>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -30,7 +31,7 @@ constexpr BakeOptions kOptions{.directions = 64,
                                .training_vertices = 150,
                                .residual_vertices = 20};
 
-// Two spheres beside each other: 544 vertices, 17 blocks of them.
+// Two spheres beside each other: 264 + 312 vertices.
 TriangleMesh make_scene() {
   TriangleMesh mesh = test::make_sphere({0, 0, 0}, 0.5f, 11);
   const TriangleMesh other = test::make_sphere({1.1f, 0.2f, 0.1f}, 0.5f, 12);
@@ -154,6 +155,41 @@ TEST_F(BakeResume, CastsNoRayOfAFinishedBlockAgain) {
   EXPECT_LT(none.rays_cast, whole.rays_cast / 10);
   EXPECT_EQ(none.vertices_resumed, mesh_.positions.size());
   EXPECT_EQ(whole.vertices_resumed, 0u);
+}
+
+// As if another processor had trained them: the journal's facts agree, its coefficients do not.
+TEST_F(BakeResume, CoefficientsOfOtherBasesAreNotTaken) {
+  ASSERT_TRUE(run(false, kForever, nullptr));
+  const BakeJournal::Facts facts = [&] {
+    BakeJournal::Facts found;
+    std::istringstream lines(bytes_of(journal_path()).substr(32));  // after the record's header
+    for (std::string line; std::getline(lines, line) && line.find('=') < line.size();)
+      if (found.size() < 14)
+        found.emplace_back(line.substr(0, line.find('=')), line.substr(line.find('=') + 1));
+    return found;
+  }();
+  std::vector<BakeJournal::Record> records;
+  std::size_t results = 0;
+  {
+    BakeJournal journal(journal_path());
+    journal.resume(facts, [&](BakeJournal::Record&& record) {
+      constexpr std::uint32_t kResults = 2;
+      if (record.kind == kResults) {
+        ++results;
+        for (std::byte& byte : record.payload) byte ^= std::byte{0x11};
+      }
+      records.push_back(std::move(record));
+    });
+    journal.start(facts);
+    for (const BakeJournal::Record& record : records)
+      journal.append(record.kind, record.index, record.payload);
+  }
+  ASSERT_EQ(results, 19u);  // 150 vertices in 5 blocks of at most 32, the other 426 in 14
+  Transfer transfer;
+  BakeTimings timings;
+  ASSERT_TRUE(run(true, kForever, &transfer, &timings));
+  EXPECT_EQ(timings.vertices_resumed, 0u);
+  EXPECT_EQ(file_bytes(transfer), expected_);
 }
 
 TEST_F(BakeResume, OtherInputsAreRefusedByName) {
