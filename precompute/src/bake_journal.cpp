@@ -55,44 +55,57 @@ std::string find_fact(const std::string& text, const std::string& name) {
   return lines.substr(value, lines.find('\n', value) - value);
 }
 
-// Reads all of `size` bytes unless the file ends.
-bool read_all(int descriptor, void* to, std::size_t size) {
+// Reads all of `size` bytes from `offset` on, and moves it past them, unless the file ends.
+bool read_all(int descriptor, std::uint64_t& offset, void* to, std::size_t size) {
   auto* bytes = static_cast<char*>(to);
   while (size > 0) {
-    const ssize_t got = ::read(descriptor, bytes, size);
+    const ssize_t got = ::pread(descriptor, bytes, size, static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return false;
     bytes += got;
+    offset += static_cast<std::uint64_t>(got);
     size -= static_cast<std::size_t>(got);
   }
   return true;
 }
 
+// Whether the open file is the one of that name: its owner may have removed it between our open()
+// and our lock.
+bool is_still_named(int descriptor, const std::string& path) {
+  struct stat ours = {}, named = {};
+  return ::fstat(descriptor, &ours) == 0 && ::stat(path.c_str(), &named) == 0 &&
+         ours.st_ino == named.st_ino && ours.st_dev == named.st_dev;
+}
+
 }  // namespace
 
 BakeJournal::BakeJournal(std::string path) : path_(std::move(path)) {
-  descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor_ < 0) fail("be opened", errno);
-  if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
-    const int number = errno;
-    ::close(descriptor_);
-    descriptor_ = -1;
-    if (number == EWOULDBLOCK)
-      throw Error(ErrorKind::output, path_, "is in use by another bake of the same output");
-    fail("be locked", number);
-  }
+  do {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    descriptor_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0) fail("be opened", errno);
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      const int number = errno;
+      ::close(descriptor_);
+      descriptor_ = -1;
+      if (number == EWOULDBLOCK)
+        throw Error(ErrorKind::output, path_, "is in use by another bake of the same output");
+      fail("be locked", number);
+    }
+  } while (!is_still_named(descriptor_, path_));
   // Another file of that name is not ours to empty.
   std::uint32_t magic = kMagic;
-  if (read_all(descriptor_, &magic, sizeof(magic)) && magic != kMagic) {
+  std::uint64_t offset = 0;
+  if (read_all(descriptor_, offset, &magic, sizeof(magic)) && magic != kMagic) {
     ::close(descriptor_);
     descriptor_ = -1;
     throw Error(ErrorKind::input, path_,
                 fmt::format("is not the journal of a bake: it begins with {:08x}, expected {:08x}",
                             magic, kMagic));
   }
-  ::lseek(descriptor_, 0, SEEK_SET);
+  offset = 0;
   Record facts;
-  holds_work_ = read_record(facts) && facts.kind == kFactsKind;
+  holds_work_ = read_record(offset, facts) && facts.kind == kFactsKind;
 }
 
 BakeJournal::~BakeJournal() {
@@ -106,10 +119,12 @@ void BakeJournal::fail(const char* action, int error_number) const {
               fmt::format("cannot {}: {}", action, std::strerror(error_number)));
 }
 
-bool BakeJournal::read_record(Record& record) {
+// Moves `offset` past the record, if it is intact.
+bool BakeJournal::read_record(std::uint64_t& offset, Record& record) const {
   Header header;
   struct stat status = {};
-  if (!read_all(descriptor_, &header, sizeof(header)) || header.magic != kMagic) return false;
+  std::uint64_t at = offset;
+  if (!read_all(descriptor_, at, &header, sizeof(header)) || header.magic != kMagic) return false;
   // Before memory is taken for a length that may be garbage.
   if (::fstat(descriptor_, &status) != 0 ||
       header.bytes > static_cast<std::uint64_t>(status.st_size))
@@ -117,9 +132,11 @@ bool BakeJournal::read_record(Record& record) {
   record.kind = header.kind;
   record.index = header.index;
   record.payload.resize(filled_size(header.bytes));
-  if (!read_all(descriptor_, record.payload.data(), record.payload.size())) return false;
+  if (!read_all(descriptor_, at, record.payload.data(), record.payload.size())) return false;
   if (checksum(header, record.payload) != header.checksum) return false;
   record.payload.resize(header.bytes);
+  record.offset = offset;
+  offset = at;
   return true;
 }
 
@@ -132,9 +149,9 @@ void BakeJournal::start(const Facts& facts) {
 }
 
 void BakeJournal::resume(const Facts& facts, const std::function<void(Record&&)>& visit) {
-  ::lseek(descriptor_, 0, SEEK_SET);
+  std::uint64_t offset = 0;
   Record record;
-  if (!read_record(record) || record.kind != kFactsKind)
+  if (!read_record(offset, record) || record.kind != kFactsKind)
     throw Error(ErrorKind::input, path_,
                 "holds no facts in its first record, expected those of a bake");
   const std::string found(reinterpret_cast<const char*>(record.payload.data()),
@@ -147,14 +164,23 @@ void BakeJournal::resume(const Facts& facts, const std::function<void(Record&&)>
   if (found != facts_text(facts))
     throw Error(ErrorKind::input, path_,
                 "holds facts that this version of burnish does not know, expected its own");
-  off_t good = ::lseek(descriptor_, 0, SEEK_CUR);
-  while (read_record(record)) {
-    good = ::lseek(descriptor_, 0, SEEK_CUR);
+  while (read_record(offset, record)) {
     visit(std::move(record));
     record = {};
   }
-  if (::ftruncate(descriptor_, good) != 0) fail("be shortened", errno);
-  ::lseek(descriptor_, good, SEEK_SET);
+  const auto end = static_cast<off_t>(offset);
+  if (::ftruncate(descriptor_, end) != 0) fail("be shortened", errno);
+  ::lseek(descriptor_, end, SEEK_SET);
+}
+
+BakeJournal::Record BakeJournal::read(std::uint64_t offset) const {
+  Record record;
+  if (!read_record(offset, record))
+    throw Error(ErrorKind::input, path_,
+                fmt::format("holds no intact record at byte {} any more, expected the one that was "
+                            "there",
+                            offset));
+  return record;
 }
 
 void BakeJournal::append(std::uint32_t kind, std::uint32_t index,
@@ -171,7 +197,11 @@ void BakeJournal::append(std::uint32_t kind, std::uint32_t index,
   for (std::size_t done = 0; done < bytes.size();) {
     const ssize_t written = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail("be written", errno);
+    if (written < 0)
+      throw Error(ErrorKind::output, path_,
+                  fmt::format("cannot be written: {}; what it holds is good, and a bake that "
+                              "resumes goes on from there",
+                              std::strerror(errno)));
     done += static_cast<std::size_t>(written);
   }
 }

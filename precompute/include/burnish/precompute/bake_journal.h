@@ -24,6 +24,7 @@ class BakeJournal {
   struct Record {
     std::uint32_t kind = 0, index = 0;  ///< the bake's own; kind > 0
     std::vector<std::byte> payload;
+    std::uint64_t offset = 0;  ///< in the file, for read()
   };
 
   /// Throws Error(ErrorKind::output) when the file cannot be opened or another process has it.
@@ -45,6 +46,10 @@ class BakeJournal {
   /// journal was started with.
   void resume(const Facts& facts, const std::function<void(Record&&)>& visit);
 
+  /// One of the records that resume() has handed out, again. Thread-safe. Throws
+  /// Error(ErrorKind::input) when it is no longer there.
+  Record read(std::uint64_t offset) const;
+
   /// Thread-safe; call after start() or resume(). Throws Error(ErrorKind::output), for a full disk
   /// above all; the records before it stay good.
   void append(std::uint32_t kind, std::uint32_t index, std::span<const std::byte> payload);
@@ -53,7 +58,7 @@ class BakeJournal {
   void remove();
 
  private:
-  bool read_record(Record& record);
+  bool read_record(std::uint64_t& offset, Record& record) const;
   [[noreturn]] void fail(const char* action, int error_number) const;
 
   std::string path_;
