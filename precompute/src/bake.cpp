@@ -23,7 +23,7 @@ namespace {
 
 // Vertices that are traced, projected and noted in the journal together. Fixed, so that a block's
 // result does not depend on who computes it.
-constexpr std::size_t kBlock = 32;
+constexpr std::size_t kBlock = 96;
 
 // Kinds of journal records; the index is the block's. What was trained is not noted: from the
 // training set's masks it comes out the same again.
@@ -106,7 +106,8 @@ class Bake {
   const Blocks training_, others_;
 
   std::vector<BlockState> states_;
-  std::vector<std::vector<std::byte>> recalled_masks_, recalled_results_;
+  // Where the journal has blocks' records; 0: nowhere, as its facts are there.
+  std::vector<std::uint64_t> recalled_masks_, recalled_results_;
   std::atomic<bool> occlusion_found_ = false;
   std::atomic<std::uint64_t> resumed_ = 0;  // vertices
   VisibilityRows training_rows_, measured_rows_;
@@ -161,11 +162,18 @@ BakeTimings Bake::timings() const {
 }
 
 bool Bake::nothing_occludes() const {
-  const auto all_open = [&](const std::vector<std::uint32_t>& vertices) {
-    return std::all_of(vertices.begin(), vertices.end(),
-                       [&](std::uint32_t vertex) { return station_.sees_all(vertex); });
-  };
-  return all_open(roles_.training) && all_open(roles_.others);
+  std::atomic<bool> open = true;
+  ProgressMonitor monitor(run_.progress, "horizon", training_.size() + others_.size());
+  tbb::parallel_for(std::size_t{0}, states_.size(), [&](std::size_t block) {
+    if (!open) return;
+    for (const std::uint32_t vertex : vertices_of(block))
+      if (!station_.sees_all(vertex)) {
+        open = false;
+        return;
+      }
+    monitor.advance(1);
+  });
+  return open;
 }
 
 void Bake::open_journal() {
@@ -176,7 +184,7 @@ void Bake::open_journal() {
     auto* const kept = record.kind == kTrainingRecord ? &recalled_masks_
                        : record.kind == kResultRecord ? &recalled_results_
                                                       : nullptr;
-    if (kept && record.index < kept->size()) (*kept)[record.index] = std::move(record.payload);
+    if (kept && record.index < kept->size()) (*kept)[record.index] = record.offset;
   });
 }
 
@@ -188,7 +196,6 @@ void Bake::trace_training() {
     if (!recall_training_block(block, worker)) trace_training_block(block, worker);
     monitor.advance(training_[block].size());
   });
-  recalled_masks_ = {};
 }
 
 void Bake::trace_training_block(std::size_t block, BakeWorker& worker) {
@@ -210,8 +217,9 @@ void Bake::trace_training_block(std::size_t block, BakeWorker& worker) {
 }
 
 bool Bake::recall_training_block(std::size_t block, BakeWorker& worker) {
-  if (recalled_masks_[block].empty()) return false;
-  ByteReader record(recalled_masks_[block]);
+  if (recalled_masks_[block] == 0) return false;
+  const BakeJournal::Record found = run_.journal->read(recalled_masks_[block]);
+  ByteReader record(found.payload);
   VisibilityMask mask(options_.directions);
   states_[block] = record.get<BlockState>();
   for (std::size_t i = 0; i < training_[block].size(); ++i) {
@@ -232,11 +240,13 @@ void Bake::trace_measured() {
   const Clock::time_point start = Clock::now();
   measured_masks_.resize(roles_.measured.size());
   measured_rows_.resize(roles_.measured.size(), options_);
+  ProgressMonitor monitor(run_.progress, "measure", measured_masks_.size());
   tbb::parallel_for(std::size_t{0}, measured_masks_.size(), [&](std::size_t i) {
     BakeWorker& worker = workers_.local();
     station_.trace(roles_.measured[i], worker);
     measured_masks_[i] = worker.mask;
     station_.derive(worker.mask, i, measured_rows_, worker);
+    monitor.advance(1);
   });
   timings_.measure_s += seconds_since(start);
 }
@@ -302,8 +312,9 @@ void Bake::project_block(std::size_t block, BakeWorker& worker) {
 }
 
 bool Bake::recall_result(std::size_t block) {
-  if (recalled_results_[block].empty()) return false;
-  ByteReader record(recalled_results_[block]);
+  if (recalled_results_[block] == 0) return false;
+  const BakeJournal::Record found = run_.journal->read(recalled_results_[block]);
+  ByteReader record(found.payload);
   // Coefficients of other bases (another processor's or library's rounding) would mean nothing.
   if (record.get<std::uint64_t>() != model_->fingerprint()) return false;
   BlockCoefficients result(vertices_of(block).size(), *model_);
@@ -312,7 +323,6 @@ bool Bake::recall_result(std::size_t block) {
   if (!record.complete()) return false;
   states_[block] = state;
   copy_to_transfer(vertices_of(block), result);
-  recalled_results_[block] = {};
   resumed_ += vertices_of(block).size();
   return true;
 }
@@ -336,6 +346,7 @@ void Bake::copy_meshes() {
   transfer_.tangents = receiver_.tangents;
   transfer_.file_vertex = receiver_.file_vertex;
   transfer_.triangles = receiver_.triangles;
+  make_storable(transfer_);
   transfer_.parts = receiver_.parts;
   if (transfer_.parts.empty())
     transfer_.parts.push_back({receiver_.name, 0,

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "burnish/formats/error.h"
+#include "burnish/formats/mesh_frames.h"
 #include "burnish/formats/transfer_file.h"
 #include "fnv1a.h"
 
@@ -95,6 +96,27 @@ std::vector<Vector3f> usable_normals(const TriangleMesh& mesh) {
     normals[i] = usable ? Vector3f((normal / length).cast<float>()) : Vector3f::Zero();
   }
   return normals;
+}
+
+void make_storable(Transfer& transfer) {
+  constexpr float kTolerance = 1e-4f;  // good to shade with, and within what the file format takes
+  const auto is_unit = [](const Vector3f& v) { return std::abs(v.norm() - 1) <= kTolerance; };
+  for (std::size_t i = 0; i < transfer.positions.size(); ++i) {
+    Vector3f& normal = transfer.normals[i];
+    Vector3f& tangent = transfer.tangents[i];
+    if (!transfer.positions[i].allFinite()) transfer.positions[i].setZero();
+    if (!is_unit(normal)) {
+      const double length = normal.cast<double>().norm();
+      normal = length > 0 && std::isfinite(length)
+                   ? Vector3f((normal.cast<double>() / length).cast<float>())
+                   : Vector3f::UnitY();
+    }
+    if (is_unit(tangent) && std::abs(tangent.dot(normal)) <= kTolerance) continue;
+    const Vector3d n = normal.cast<double>(), along = tangent.cast<double>().normalized();
+    const Vector3d rest = along - along.dot(n) * n;
+    tangent = rest.norm() > 1e-6 ? Vector3f(rest.normalized().cast<float>())
+                                 : tangent_from_up(normal, UpAxis::y);
+  }
 }
 
 VertexRoles assign_roles(const std::vector<Vector3f>& normals, const BakeOptions& options) {

@@ -22,6 +22,10 @@ std::string receiver_name(const TriangleMesh& mesh);
 /// Unit normals; zero where a vertex cannot be baked.
 std::vector<Vector3f> usable_normals(const TriangleMesh& mesh);
 
+/// Repairs what a transfer cannot hold: positions that are not finite become 0, and normals and
+/// tangents unit and orthogonal. What is good stays as it is.
+void make_storable(Transfer& transfer);
+
 /// Disjoint sets of usable vertices, each in rising order.
 struct VertexRoles {
   std::vector<std::uint32_t> training;  ///< what the bases are trained on

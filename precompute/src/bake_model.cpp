@@ -127,7 +127,7 @@ void BakeModel::measure(const VisibilityRows& rows, std::span<const VisibilityMa
     encode_ssdf(encoded.ssdf(i), static_cast<float>(options_.amplitude_rad));
   project(encoded, 0, result, scratch);
   const LobeVisibilityErrors found =
-      measure_lobe_visibility({bases_, result.basis_id, result.ssdf, rows.ssdfs(), masks});
+      measure_lobe_visibility({bases_, result.basis_id, result.ssdf, rows.ssdfs(), {}});
   provenance.residual_rms_rad = found.rms_rad;
   provenance.wrong_sign_fraction = found.wrong_sign_fraction;
   provenance.ssdf_errors = found.compression;

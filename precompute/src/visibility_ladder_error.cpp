@@ -34,18 +34,18 @@ std::vector<Vector3f> random_directions(int count, std::uint64_t seed) {
 
 // Normalised lobes around the directions, one a row, over the texels of the truth.
 RowMatrixf lobe_rows(const std::vector<Vector3f>& directions, float bandwidth, int resolution) {
-  RowMatrixf rows(static_cast<Index>(directions.size()), Index{resolution} * resolution);
-  for (Index texel = 0; texel < rows.cols(); ++texel) {
-    const auto i = static_cast<int>(texel);
-    const Vector3f d =
-        octahedral_texel_direction<double>(i % resolution, i / resolution, resolution)
-            .cast<float>();
-    for (Index row = 0; row < rows.rows(); ++row)
-      rows(row, texel) =
-          std::exp(2 * bandwidth * (directions[static_cast<std::size_t>(row)].dot(d) - 1));
-  }
-  for (Index row = 0; row < rows.rows(); ++row)
-    rows.row(row) /= static_cast<float>(rows.row(row).cast<double>().sum()) * kFullCoverage;
+  Eigen::Matrix3Xf texels(3, Index{resolution} * resolution);
+  for (Index i = 0; i < texels.cols(); ++i)
+    texels.col(i) = octahedral_texel_direction<double>(static_cast<int>(i) % resolution,
+                                                       static_cast<int>(i) / resolution, resolution)
+                        .cast<float>();
+  RowMatrixf rows(static_cast<Index>(directions.size()), texels.cols());
+  tbb::parallel_for(Index{0}, rows.rows(), [&](Index i) {
+    auto row = rows.row(i);
+    const Eigen::RowVector3f axis = directions[static_cast<std::size_t>(i)].transpose();
+    row = (2 * bandwidth * ((axis * texels).array() - 1)).exp();
+    row /= static_cast<float>(row.cast<double>().sum()) * kFullCoverage;
+  });
   return rows;
 }
 

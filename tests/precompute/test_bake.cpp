@@ -2,6 +2,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <cstdio>
 #include <functional>
 #include <limits>
 #include <random>
@@ -13,6 +14,7 @@
 #include <tbb/global_control.h>
 
 #include "burnish/formats/error.h"
+#include "burnish/formats/transfer_file.h"
 #include "burnish/precompute/bake.h"
 #include "burnish/precompute/lobe_visibility_error.h"
 #include "burnish/precompute/spherical_distance_transform.h"
@@ -368,12 +370,17 @@ TEST(Bake, UnusableVerticesAreLeftOut) {
   messy.positions.insert(messy.positions.end(),
                          {{0, 0, 0}, {nan, 0, 0}, {0, 0, 0}, mesh.positions[40]});
   messy.normals.insert(messy.normals.end(), {{0, 0, 0}, up, {nan, 0, 1}, 7 * mesh.normals[40]});
-  messy.tangents.insert(messy.tangents.end(), 4, Vector3f::UnitX());
+  messy.tangents.insert(messy.tangents.end(),
+                        {Vector3f::UnitX(), {nan, 0, 0}, {0, 0, 0}, mesh.normals[40]});
   messy.file_vertex.insert(messy.file_vertex.end(), 4, 0);
   messy.triangles.push_back({static_cast<std::uint32_t>(count + 1), 0, 1});  // a corner not finite
   const Transfer transfer = bake(messy, {}, kSmall);
   ASSERT_EQ(transfer.coefficients.size(), 12 * (count + 4));
-  for (const float c : transfer.coefficients) ASSERT_TRUE(std::isfinite(c));
+  const std::string path = testing::TempDir() + "burnish_unusable_vertices.h5";
+  EXPECT_NO_THROW(write_transfer(transfer, path));
+  std::remove(path.c_str());
+  EXPECT_EQ(transfer.positions[count - 1], mesh.positions[count - 1]);
+  EXPECT_EQ(transfer.tangents[count - 1], mesh.tangents[count - 1]);
   for (std::size_t v = count; v < count + 3; ++v)
     for (int k = 0; k < 12; ++k) EXPECT_EQ(transfer.vertex_coefficients(v)[k], 0);
   // The copy of vertex 40, referenced by no triangle and with a longer normal, is as vertex 40.
@@ -406,21 +413,22 @@ TEST(Bake, ProgressCountsEveryStageFromOneThreadAtATime) {
     return true;
   };
   bake(mesh, {}, options, {.progress = progress});
-  EXPECT_EQ(stages, (std::vector<std::string>{"train", "basis", "bake"}));
-  ASSERT_EQ(totals.size(), 3u);
-  EXPECT_EQ(totals[0], 50u);
-  EXPECT_EQ(totals[2], mesh.positions.size());
-  EXPECT_EQ(last[0], totals[0]);
-  EXPECT_EQ(last[1], totals[1]);
-  EXPECT_EQ(last[2], totals[2]);
+  EXPECT_EQ(stages, (std::vector<std::string>{"horizon", "train", "measure", "basis", "bake"}));
+  ASSERT_EQ(totals.size(), 5u);
+  EXPECT_EQ(totals[1], 50u);
+  EXPECT_EQ(totals[2], mesh.positions.size() - 50);
+  EXPECT_EQ(totals[4], mesh.positions.size());
+  // The first stage ends with the first vertex that something occludes.
+  for (std::size_t i = 1; i < last.size(); ++i) EXPECT_EQ(last[i], totals[i]) << stages[i];
 }
 
 TEST(Bake, StopsPromptlyWhenAskedTo) {
   const TriangleMesh mesh = make_scene();
   BakeOptions options = kSmall;
   options.training_vertices = 50;
-  for (const std::string stop : {"train", "basis", "bake"})
+  for (const std::string stop : {"horizon", "train", "measure", "basis", "bake"})
     for (const std::uint64_t at : {0, 3}) {
+      if (stop == "horizon" && at > 0) continue;  // it ends with the first occluded vertex
       int calls_after = 0;
       bool stopped = false;
       const Progress progress = [&](std::string_view stage, std::uint64_t done, std::uint64_t) {

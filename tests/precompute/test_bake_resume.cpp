@@ -184,7 +184,7 @@ TEST_F(BakeResume, CoefficientsOfOtherBasesAreNotTaken) {
     for (const BakeJournal::Record& record : records)
       journal.append(record.kind, record.index, record.payload);
   }
-  ASSERT_EQ(results, 19u);  // 150 vertices in 5 blocks of at most 32, the other 426 in 14
+  ASSERT_EQ(results, 7u);  // 150 vertices in 2 blocks of at most 96, the other 426 in 5
   Transfer transfer;
   BakeTimings timings;
   ASSERT_TRUE(run(true, kForever, &transfer, &timings));

@@ -48,12 +48,13 @@ struct BakeTimings {
   double project_s = 0;         ///< summed over threads
   double total_s = 0;           ///< wall clock
   std::uint64_t rays_cast = 0;  ///< in this run; a resumed one casts fewer than the bake needs
-  std::uint64_t vertices_resumed = 0;
+  std::uint64_t vertices_resumed = 0;  ///< whose coefficients were in the journal
 };
 
 /// How a bake is run: changes nothing of its result.
 struct BakeRun {
-  /// Hears of the stages "train" (in vertices), "basis" (in steps) and "bake" (in vertices).
+  /// Hears of the stages "horizon" (in blocks of vertices; ends with the first that is not empty),
+  /// "train" and "measure" (in vertices), "basis" (in steps) and "bake" (in vertices).
   Progress progress = {};
   BakeTimings* timings = nullptr;
   /// Takes note of what is finished; `resume` goes on from what it holds, to the same bytes. The
@@ -75,7 +76,8 @@ RayScene make_ray_scene(const TriangleMesh& receiver, std::span<const TriangleMe
 ///
 /// - A vertex whose position or normal is not finite, or whose normal is zero, sees nothing that
 ///   could be shaded: its coefficients are 0 (the mean), and it counts neither for the bases nor
-///   for the errors. A normal of another length is taken as a direction.
+///   for the errors; the transfer has a position of 0 and a normal along y in place of what is not
+///   usable. A normal of another length is taken as a direction.
 /// - Where nothing but its own horizon occludes any vertex, the transfer has no bases.
 ///
 /// Throws Error for options out of range, arrays that do not match, an index out of range, a
