@@ -137,9 +137,10 @@ TEST(Usage, ValuesOutOfRangeNameTheRange) {
 
 TEST(Usage, ContradictionsAreRefusedBeforeAnyFileIsRead) {
   const std::vector<std::vector<std::string>> wrong = {
-      {"bake", "a.obj"},                                // no output
-      {"bake", "a.obj", "-o", "a.exr"},                 // not .h5
-      {"bake", "a.obj", "b.scene.json", "-o", "a.h5"},  // a scene is baked alone
+      {"bake", "a.obj"},                                    // no output
+      {"bake", "a.obj", "-o", "a.exr"},                     // not .h5
+      {"bake", "a.obj", "b.scene.json", "-o", "a.h5"},      // a scene is baked alone
+      {"bake", "b.scene.json", "--up", "z", "-o", "a.h5"},  // the scene says what is up
       {"bake", "a.obj", "-o", "a.h5", "--resume", "--restart"},
       {"bake", "a.obj", "-o", "a.h5", "--directions", "64", "--resolution", "128"},
       {"fit-light", "-o", "a.json"},          // no environment

@@ -32,6 +32,7 @@ struct Options {
   std::vector<std::string> occluders;
   std::string output;
   MeshReadOptions reading;
+  CLI::Option* up = nullptr;
   bool ground = false;
   float max_edge = 0;
   float refine_error = 0;
@@ -75,6 +76,9 @@ void check_usage(const Options& options) {
       if (is_scene_file(file))
         throw UsageError(fmt::format("{}: a scene file is baked alone, found {} inputs", file,
                                      options.meshes.size()));
+  if (is_scene_file(options.meshes.front()) && options.up->count() > 0)
+    throw UsageError(fmt::format("--up: found beside {}, expected in the scene file, as \"up\"",
+                                 options.meshes.front()));
   if (options.min_edge > 0 && options.refine_error == 0)
     throw UsageError("--min-edge: found without --refine-error, expected with it");
   if (options.resume && options.restart)
@@ -287,9 +291,9 @@ std::function<void()> declare_bake(CLI::App& app) {
   add_choice(app, "--checks", options->checks, {{"on", true}, {"off", false}},
              "look for vertices inside or on other geometry and for triangles that are too large");
   add_coefficient_option(app, options->writing);
-  add_choice(app, "--up", options->reading.up,
-             {{"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}},
-             "the meshes' upward axis, for the ground and for tangents of surfaces without UVs");
+  options->up = add_choice(
+      app, "--up", options->reading.up, {{"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}},
+      "the meshes' upward axis, for the ground and for tangents of surfaces without UVs");
   add_number(app, "--verify", "N", options->verify, {0, 1 << 20},
              "cast all rays for this many vertices, too, and say what differs");
   app.add_flag("--resume", options->resume,
