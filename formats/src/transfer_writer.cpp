@@ -108,15 +108,8 @@ class TransferWriter {
     writer_.group(transfer_path::kSsdf);
     writer_.attribute(transfer_path::kSsdf, "amplitude_rad", first.amplitude_rad);
     writer_.group("/visibility/ssdf/basis");
-    const hsize_t texels = first.mean.size();
-    write_rows(transfer_path::kMean, {bases.size(), texels},
-               [&](hsize_t b) { return bases[b].mean.data(); });
-    const std::vector<hsize_t> shape = {bases.size(), texels, extent(first.terms)};
-    const auto eigen = [&](hsize_t b) { return bases[b].eigen.data(); };
-    if (type_ == CoefficientType::float32)
-      write_rows(transfer_path::kEigen, shape, eigen);
-    else
-      write_halves(transfer_path::kEigen, shape, 1, eigen);
+    write_basis(transfer_path::kMean, transfer_path::kEigen, bases,
+                type_ != CoefficientType::float32);
     writer_.array(transfer_path::kBasisId, {transfer_.basis_id.size()}, transfer_.basis_id);
     write_coefficients(transfer_path::kCoefficients, transfer_.coefficients, first.terms);
   }
@@ -127,13 +120,23 @@ class TransferWriter {
     writer_.group(transfer_path::kLadder);
     writer_.attribute(transfer_path::kLadder, "crossover", transfer_.ladder_crossover);
     writer_.group("/visibility/ladder/basis");
-    const hsize_t harmonics = first.mean.size();
-    write_rows(transfer_path::kLadderMean, {bases.size(), harmonics},
-               [&](hsize_t b) { return bases[b].mean.data(); });
-    write_rows(transfer_path::kLadderEigen, {bases.size(), harmonics, extent(first.terms)},
-               [&](hsize_t b) { return bases[b].eigen.data(); });
+    write_basis(transfer_path::kLadderMean, transfer_path::kLadderEigen, bases, false);
     write_coefficients(transfer_path::kLadderCoefficients, transfer_.ladder_coefficients,
                        first.terms);
+  }
+
+  /// Means and eigenvectors; these as halves, or as they are.
+  template <class Basis>
+  void write_basis(const char* mean_path, const char* eigen_path, const std::vector<Basis>& bases,
+                   bool halves) {
+    const hsize_t size = bases[0].mean.size();
+    write_rows(mean_path, {bases.size(), size}, [&](hsize_t b) { return bases[b].mean.data(); });
+    const std::vector<hsize_t> shape = {bases.size(), size, extent(bases[0].terms)};
+    const auto eigen = [&](hsize_t b) { return bases[b].eigen.data(); };
+    if (halves)
+      write_halves(eigen_path, shape, 1, eigen);
+    else
+      write_rows(eigen_path, shape, eigen);
   }
 
   /// Floats as they are; `values(row)` gives one along the first dimension.

@@ -7,6 +7,7 @@
 
 #include "burnish/formats/light_file.h"
 #include "files.h"
+#include "json_damage.h"
 
 namespace burnish::test {
 namespace {
@@ -240,22 +241,8 @@ TEST(LightFile, FailedWriteLeavesTheOldFile) {
 }
 
 TEST(LightFile, EveryTruncationAndChangeIsRejectedOrRead) {
-  const std::string json = format_lights(random_lights(9, 2, 1), kName);
-  for (size_t size = 0; size + 2 < json.size(); ++size)  // without "}\n" it is still cut
-    EXPECT_NE(parse_error(json.substr(0, size)), "") << size;
-  constexpr unsigned kSeed = 12;
-  std::mt19937 random(kSeed);
-  int rejected = 0;
-  for (int i = 0; i < 5000; ++i) {
-    std::string damaged = json;
-    damaged[random() % json.size()] = static_cast<char>(random());
-    try {
-      parse_lights(damaged, kName);
-    } catch (const Error&) {
-      ++rejected;
-    }
-  }
-  EXPECT_GT(rejected, 1000) << "seed " << kSeed;
+  expect_damage_is_refused_or_read(format_lights(random_lights(9, 2, 1), kName), 12,
+                                   [](const std::string& json) { parse_lights(json, kName); });
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "burnish/formats/error.h"
 #include "burnish/formats/mesh_file.h"
 #include "files.h"
+#include "mesh_measures.h"
 
 namespace burnish::test {
 
@@ -74,30 +75,6 @@ inline std::string refusal_of(const std::string& path, ErrorKind kind = ErrorKin
   EXPECT_NE(message, "") << path << " was read, expected an Error";
   for (const char c : message) EXPECT_TRUE(c >= ' ' && c <= '~') << message;
   return message;
-}
-
-/// Volume enclosed by a mesh, by the divergence theorem: positive when normals point outward.
-inline double signed_volume(const TriangleMesh& mesh) {
-  double volume = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vector3d a = mesh.positions[t[0]].cast<double>();
-    const Vector3d b = mesh.positions[t[1]].cast<double>();
-    const Vector3d c = mesh.positions[t[2]].cast<double>();
-    volume += a.dot(b.cross(c)) / 6;
-  }
-  return volume;
-}
-
-inline double surface_area(const TriangleMesh& mesh) {
-  double area = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vector3d a = mesh.positions[t[0]].cast<double>();
-    area += (mesh.positions[t[1]].cast<double>() - a)
-                .cross(mesh.positions[t[2]].cast<double>() - a)
-                .norm() /
-            2;
-  }
-  return area;
 }
 
 }  // namespace burnish::test

@@ -9,6 +9,7 @@
 
 #include "burnish/formats/mesh_assembly.h"
 #include "files.h"
+#include "json_damage.h"
 
 namespace burnish::test {
 namespace {
@@ -134,24 +135,9 @@ TEST(SceneFile, AMeshThatCannotBeReadIsNamed) {
 }
 
 TEST(SceneFile, EveryTruncationAndChangeIsRejectedOrRead) {
-  const std::string json = read_bytes(scene_data("cubes.scene.json"));
-  const std::string name = "cubes.scene.json";
-  for (size_t size = 0; size + 2 < json.size(); ++size)  // without "}\n" it is still cut
-    EXPECT_NE(error_of(name, [&] { parse_scene(json.substr(0, size), name); }), "") << size;
-  constexpr unsigned kSeed = 14;
-  SCOPED_TRACE(kSeed);
-  std::mt19937 random(kSeed);
-  int rejected = 0;
-  for (int i = 0; i < 5000; ++i) {
-    std::string damaged = json;
-    damaged[random() % json.size()] = static_cast<char>(random());
-    try {
-      parse_scene(damaged, name);
-    } catch (const Error&) {
-      ++rejected;
-    }
-  }
-  EXPECT_GT(rejected, 1000);  // most characters are of the structure or of a field's name
+  expect_damage_is_refused_or_read(
+      read_bytes(scene_data("cubes.scene.json")), 14,
+      [](const std::string& json) { parse_scene(json, "cubes.scene.json"); });
 }
 
 }  // namespace

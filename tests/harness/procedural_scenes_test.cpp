@@ -11,6 +11,7 @@
 
 #include "burnish/formats/error.h"
 #include "harness/shapes.h"
+#include "mesh_measures.h"
 
 namespace burnish {
 namespace {
@@ -45,14 +46,6 @@ size_t open_edges(const TriangleMesh& mesh) {
     open += count != 1 || other == directed.end() || other->second != 1;
   }
   return open;
-}
-
-/// By the divergence theorem; positive when the triangles turn outward.
-double signed_volume(const TriangleMesh& mesh) {
-  double sum = 0;
-  for (const Triangle& t : mesh.triangles)
-    sum += mesh.positions[t[0]].cast<double>().dot(triangle_cross(mesh, t)) / 6;
-  return sum;
 }
 
 TEST_P(EachScene, HasConsistentArrays) {
@@ -169,7 +162,7 @@ TEST(Shapes, DishIsClosedAndHasTheVolumeOfItsProfile) {
   const double expected = thickness * area + 2 * kPi<double> *
                                                  (rim + 4 * half / (3 * kPi<double>)) *
                                                  kPi<double> * half * half / 2;
-  EXPECT_NEAR(signed_volume(mesh) / expected, 1, 3e-3);
+  EXPECT_NEAR(test::signed_volume(mesh) / expected, 1, 3e-3);
 }
 
 TEST(Shapes, SphereIsClosedAndHasItsVolume) {
@@ -177,7 +170,7 @@ TEST(Shapes, SphereIsClosedAndHasItsVolume) {
   append_sphere(mesh, Vector3f(1, 2, 3), 0.5, 96, 48);
   EXPECT_EQ(open_edges(mesh), 0u);
   // An inscribed mesh of step h lacks about h^2 / 4 in each direction: 2 x 1.1e-3 at h = 2 pi / 96.
-  EXPECT_NEAR(signed_volume(mesh) / (4 * kPi<double> / 3 * 0.125), 1, 3e-3);
+  EXPECT_NEAR(test::signed_volume(mesh) / (4 * kPi<double> / 3 * 0.125), 1, 3e-3);
   for (size_t i = 0; i < mesh.positions.size(); ++i)
     EXPECT_LT((mesh.positions[i] - Vector3f(1, 2, 3) - 0.5f * mesh.normals[i]).norm(), 1e-6f);
 }
@@ -194,7 +187,7 @@ TEST(Shapes, TorusKnotIsClosedAndHasTheVolumeOfItsTube) {
     length += std::hypot(1.2, 2 * (1 + 0.4 * std::cos(3 * t))) * 2 * kPi<double> / steps;
   }
   // 40 segments lack 4.1e-3 of the section.
-  EXPECT_NEAR(signed_volume(mesh) / (kPi<double> * 0.18 * 0.18 * length), 1, 6e-3);
+  EXPECT_NEAR(test::signed_volume(mesh) / (kPi<double> * 0.18 * 0.18 * length), 1, 6e-3);
 }
 
 TEST(Shapes, PolesHaveTheTangentOfEachSegment) {

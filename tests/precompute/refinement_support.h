@@ -14,6 +14,7 @@
 
 #include "burnish/formats/error.h"
 #include "burnish/precompute/ray_scene.h"
+#include "mesh_measures.h"
 #include "precompute/test_meshes.h"
 
 /// Meshes to refine, and what must hold of any refined mesh.
@@ -62,27 +63,6 @@ inline RayScene scene_of(std::initializer_list<TriangleMesh> meshes) {
   for (const TriangleMesh& mesh : meshes) scene.add_mesh(mesh.positions, mesh.triangles);
   scene.commit();
   return scene;
-}
-
-inline double area_of(const TriangleMesh& mesh) {
-  double area = 0;
-  for (const Triangle& t : mesh.triangles) {
-    const Vector3d a = mesh.positions[t[0]].cast<double>();
-    area += (mesh.positions[t[1]].cast<double>() - a)
-                .cross(mesh.positions[t[2]].cast<double>() - a)
-                .norm() /
-            2;
-  }
-  return area;
-}
-
-inline double volume_of(const TriangleMesh& mesh) {
-  double volume = 0;
-  for (const Triangle& t : mesh.triangles)
-    volume += mesh.positions[t[0]].cast<double>().dot(
-                  mesh.positions[t[1]].cast<double>().cross(mesh.positions[t[2]].cast<double>())) /
-              6;
-  return volume;
 }
 
 inline double longest_edge(const TriangleMesh& mesh) {

@@ -118,7 +118,7 @@ TEST(Refinement, ResolvesTheShadowOfASmallBlocker) {
   EXPECT_GT(report.added_vertices, 100u);
   EXPECT_LT(report.added_vertices, 10000u);
   EXPECT_FALSE(report.out_of_vertices);
-  EXPECT_NEAR(area_of(floor), area_of(before), 1e-5);
+  EXPECT_NEAR(surface_area(floor), surface_area(before), 1e-5);
   EXPECT_FALSE(has_t_junction(floor));
   EXPECT_EQ(euler_characteristic(floor), 1);
   expect_frames(floor);

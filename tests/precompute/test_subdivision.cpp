@@ -21,8 +21,8 @@ TEST(Subdivision, KeepsSurfaceTopologyAndTightness) {
       EXPECT_EQ(mesh.triangles.size(), before.triangles.size() + report.added_triangles);
       EXPECT_LE(longest_edge(mesh), max_edge * (1 + 1e-6));  // measured in float
       // 1e-6: corners rounded to float.
-      EXPECT_NEAR(area_of(mesh) / area_of(before), 1, 1e-6);
-      EXPECT_NEAR(volume_of(mesh) / volume_of(before), 1, 1e-6);
+      EXPECT_NEAR(surface_area(mesh) / surface_area(before), 1, 1e-6);
+      EXPECT_NEAR(signed_volume(mesh) / signed_volume(before), 1, 1e-6);
       EXPECT_FALSE(has_t_junction(mesh));
       expect_frames(mesh);
       const MeshStatistics statistics = analyse_mesh(mesh);
@@ -108,7 +108,7 @@ TEST(Subdivision, PartsStayTogether) {
       TriangleMesh one;
       one.positions = mesh.positions;
       one.triangles = {mesh.triangles[t]};
-      area += area_of(one);
+      area += surface_area(one);
     }
     EXPECT_NEAR(area, p == 0 ? 6 : p == 1 ? 0 : 24, 1e-4);
     triangle += part.triangles;
