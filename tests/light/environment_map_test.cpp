@@ -61,7 +61,7 @@ TEST(LightRig, RotatesItsLobes) {
   const Eigen::Matrix3f rotation =
       Eigen::AngleAxisf(0.7f, Vector3f(1, 2, 3).normalized()).toRotationMatrix();
   LightRig turned = rig;
-  rotate_lobes(turned, rotation);
+  rotate(turned, rotation);
   const Vector3f d = Vector3f(0.1f, 0.2f, 0.9f).normalized();
   EXPECT_NEAR((eval_lobes(turned, rotation * d) - eval_lobes(rig, d)).abs().maxCoeff(), 0, 1e-5);
   EXPECT_GT(eval_lobes(rig, d).x(), 0.1);

@@ -179,12 +179,12 @@ TEST(FitLight, OfATurnedMapIsTheTurnedFit) {
   const LightRig truth = random_rig(3, random);
   LightRig turned = truth;
   const Eigen::Matrix3f rotation = random_rotation(random).toRotationMatrix();
-  rotate_lobes(turned, rotation);
+  rotate(turned, rotation);
   LightFitOptions options;
   options.lobes = 3;
   LightFit fit = fit_light(render(truth, 256, 128), options);
   const LightFit of_turned = fit_light(render(turned, 256, 128), options);
-  rotate_lobes(fit.rig, rotation);
+  rotate(fit.rig, rotation);
   // The cells do not turn with the map: both differ from the truth by up to about a per cent.
   const LightFitError difference = measure_light_fit(render(fit.rig, 256, 128), of_turned.rig);
   EXPECT_LT(difference.relative_l2, 0.06) << "seed " << kSeed + 2;

@@ -122,7 +122,7 @@ Look load_look(const LookOptions& options, Work& work) {
       world_from_environment(up_direction(options.up), options.rotate_deg) *
       lights.world_from_environment;
   look.rig = std::move(lights.rig);
-  rotate_lobes(look.rig, look.world_from_environment);
+  rotate(look.rig, look.world_from_environment);
   look.lights = prepare_lights(look.rig, options.shading);
   look.report["lobes"] = look.rig.lobes.size();
   look.report["sphere_lights"] = look.rig.spheres.size();

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
 #include "burnish/sphere/asg_product.h"
 #include "burnish/sphere/lobe_domain.h"
 #include "burnish/sphere/lobe_moments.h"
-#include "burnish/sphere/mean_resultant.h"
 #include "burnish/sphere/spherical_warp.h"
 #include "burnish/visibility/ssdf.h"
 #include "burnish/visibility/visibility_ladder.h"
@@ -156,21 +156,21 @@ float visible_share_by_ssdf(const PointVisibility& visibility, const ShadingOpti
   return seen < above ? seen / above : 1.0f;
 }
 
-/// Integral of the lobe (unit amplitude) times visibility times the clamped cosine.
-float diffuse_integral(const PreparedLobe& light, const ShadingPoint& point,
-                       const PointVisibility& visibility, const ShadingOptions& options) {
+/// Integral of a lobe (unit amplitude) times visibility times the clamped cosine, from the lobe's
+/// own integral and that with the cosine but without visibility.
+float diffuse_integral(const AnisotropicGaussian<float>& lobe, float integral, float unshadowed,
+                       const ShadingPoint& point, const PointVisibility& visibility,
+                       const ShadingOptions& options) {
   const Vector3f& normal = point.frame.z;
   if (options.cosine == CosineModel::constant) {  // Eq. 29
-    const float cosine = normal.dot(light.lobe.frame.z);
+    const float cosine = normal.dot(lobe.frame.z);
     if (cosine <= 0) return 0;
-    const SsdfSample boundary = visibility.lookup(light.lobe.frame.z);
-    return cosine * light.integral *
-           visible_fraction(options.visibility, light.lobe, boundary.distance, boundary.gradient);
+    const SsdfSample boundary = visibility.lookup(lobe.frame.z);
+    return cosine * integral *
+           visible_fraction(options.visibility, lobe, boundary.distance, boundary.gradient);
   }
-  const float unshadowed =
-      light.integral * mean_clamped_cosine(light.moments, light.lobe.frame.to_local(normal));
   if (unshadowed <= 0 || visibility.only_horizon()) return unshadowed;
-  const AnisotropicGaussian<float> lit = lobe_times_cosine(light.lobe, normal);
+  const AnisotropicGaussian<float> lit = lobe_times_cosine(lobe, normal);
   // The curvature, without the ASG's smooth term, which the ladder's lobes do not have.
   const float wide = std::min(lit.bandwidth_x, lit.bandwidth_y) + 0.5f;
   const float narrow = std::max(lit.bandwidth_x, lit.bandwidth_y) + 0.5f;
@@ -181,77 +181,86 @@ float diffuse_integral(const PreparedLobe& light, const ShadingPoint& point,
   return unshadowed * share;
 }
 
-/// A sphere as the lobe it covers from a point: the spherical Gaussian of the same mean cosine and
-/// energy. From inside the sphere it is the whole sphere of directions.
-PreparedLobe lobe_from_sphere(const SphereLight& sphere, const Vector3f& position) {
-  const Vector3f to_center = sphere.center - position;
-  const float distance = to_center.norm();
-  const float sine = distance > sphere.radius ? sphere.radius / distance : 1.0f;
-  const bool inside = distance <= sphere.radius;
-  // 1 - cos of the cap's edge, without its cancellation for small spheres.
-  const float cos_edge = inside ? -1.0f : std::sqrt(std::max(1 - sine * sine, 0.0f));
-  const float height = inside ? 2.0f : sine * sine / (1 + cos_edge);
-  // A zero mean cosine (inside) is sharpness 0.
-  const float sharpness = sharpness_from_mean(resultant_from_complement(height / 2));
-  PreparedLobe prepared;
-  prepared.lobe.frame =
-      frame_from_axis(distance > 0 ? Vector3f(to_center / distance) : Vector3f::UnitZ());
-  prepared.lobe.bandwidth_x = prepared.lobe.bandwidth_y = sharpness / 2;
-  const float solid_angle = 2 * kPi<float> * height;
-  // Normalised so that amplitude-one integral times colour is radiance times solid angle.
-  prepared.integral = asg_integral_exact(sharpness / 2, sharpness / 2);
-  prepared.color = sphere.radiance * (solid_angle / prepared.integral);
-  prepared.moments = cap_moments(height);
-  return prepared;
+/// With the cosine, without visibility. Eq. 29 has no use for it.
+float unshadowed_integral(const PreparedLobe& light, const Vector3f& normal,
+                          const ShadingOptions& options) {
+  if (options.cosine == CosineModel::constant) return 0;
+  return light.integral * mean_clamped_cosine(light.moments, light.lobe.frame.to_local(normal));
 }
 
-/// Integral of the lobes' radiance times a BRDF lobe.
-Rgb light_from_lobes(const Lighting& lighting, const AnisotropicGaussian<float>& brdf_lobe,
-                     const ShadingOptions& options) {
-  Rgb sum = Rgb::Zero();
-  for (const PreparedLobe& light : lighting.lights->lobes)
-    sum += light.color * integral(product(light.lobe, brdf_lobe), options.integral);
-  return sum;
-}
+/// The specular part of a material at a point, Eq. 30: light through `lobe`, times `weight`.
+struct SpecularView {
+  AnisotropicGaussian<float> lobe;  ///< over incoming directions
+  float integral;                   ///< of the lobe
+  Rgb weight;                       ///< smooth factor, cosine and visibility
+};
 
-/// The specular term, Eq. 30.
-Rgb specular_radiance(const ShadingPoint& point, const Vector3f& outgoing, const Material& material,
-                      const Lighting& lighting, const PointVisibility& visibility,
-                      const ShadingOptions& options) {
+/// Nothing where the lobe is hidden or below the horizon.
+std::optional<SpecularView> specular_view(const ShadingPoint& point, const Vector3f& outgoing,
+                                          const Material& material,
+                                          const PointVisibility& visibility,
+                                          const ShadingOptions& options) {
   AnisotropicGaussian<float> half_lobe = specular_lobe(material);
   half_lobe.frame = point.frame;
   const AnisotropicGaussian<float> lobe = warp_to_incoming(half_lobe, outgoing).lobe;
   const float cosine = lobe.frame.z.dot(point.frame.z);
-  if (lobe.amplitude <= 0 || cosine <= 0) return Rgb::Zero();
+  if (lobe.amplitude <= 0 || cosine <= 0) return {};
   const SsdfSample boundary = visibility.lookup(lobe.frame.z);
   const float visible =
       visible_fraction(options.visibility, lobe, boundary.distance, boundary.gradient);
-  if (visible <= 0) return Rgb::Zero();
-
-  Rgb light = lighting.environment
-                  ? Rgb(eval_prefiltered(*lighting.environment, lobe, options.environment_taps) *
-                        integral(lobe, options.integral))
-                  : light_from_lobes(lighting, lobe, options);
-  for (const SphereLight& sphere : lighting.lights->spheres) {
-    const PreparedLobe prepared = lobe_from_sphere(sphere, point.position);
-    light += prepared.color * integral(product(prepared.lobe, lobe), options.integral);
-  }
+  if (visible <= 0) return {};
   const Rgb smooth = specular_smooth_factor(material, point.frame.to_local(outgoing),
                                             point.frame.to_local(lobe.frame.z));
-  return smooth * light * (cosine * visible);
+  return SpecularView{lobe, integral(lobe, options.integral), smooth * (cosine * visible)};
+}
+
+/// Integral of the distant environment's radiance times the lobe.
+Rgb light_through(const SpecularView& view, const Lighting& lighting,
+                  const ShadingOptions& options) {
+  if (lighting.environment)
+    return eval_prefiltered(*lighting.environment, view.lobe, options.environment_taps) *
+           view.integral;
+  Rgb sum = Rgb::Zero();
+  for (const PreparedLobe& light : lighting.lights->lobes)
+    sum += light.color * integral(product(light.lobe, view.lobe), options.integral);
+  return sum;
+}
+
+/// The same of another light. The Gaussian is brighter than the light at its middle, but no lobe
+/// sees more than the light's own radiance.
+Rgb light_through(const SpecularView& view, const LightAtPoint& light,
+                  const ShadingOptions& options) {
+  const Rgb seen = light.color * integral(product(light.lobe, view.lobe), options.integral);
+  return seen.min(light.radiance * view.integral);
+}
+
+void require(const std::string& error, const char* kind, size_t number) {
+  if (!error.empty())
+    throw std::invalid_argument(std::string(kind) + " " + std::to_string(number) + ": " + error);
+}
+
+/// Those that are not black.
+template <class Light>
+std::vector<Light> lit(const std::vector<Light>& lights, const char* kind, Rgb Light::*energy) {
+  std::vector<Light> result;
+  for (size_t i = 0; i < lights.size(); ++i) {
+    require(domain_error(lights[i]), kind, i);
+    if ((lights[i].*energy > 0).any()) result.push_back(lights[i]);
+  }
+  return result;
 }
 
 }  // namespace
 
 PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options) {
   PreparedLights prepared;
-  prepared.spheres = rig.spheres;
+  prepared.directionals = lit(rig.directionals, "directional light", &DirectionalLight::irradiance);
+  prepared.spheres = lit(rig.spheres, "sphere light", &SphereLight::radiance);
+  prepared.rectangles = lit(rig.rectangles, "rectangle light", &RectangleLight::radiance);
   prepared.lobes.reserve(rig.lobes.size());
   for (size_t i = 0; i < rig.lobes.size(); ++i) {
     const EnvironmentLobe& light = rig.lobes[i];
-    const std::string error = domain_error(light.lobe);
-    if (!error.empty())
-      throw std::invalid_argument("light lobe " + std::to_string(i) + ": " + error);
+    require(domain_error(light.lobe), "light lobe", i);
     PreparedLobe lobe;
     lobe.lobe = light.lobe;
     lobe.lobe.amplitude = 1;
@@ -268,18 +277,36 @@ Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing, const Mater
   if (outgoing.dot(point.frame.z) <= 0) return Rgb::Zero();
   const bool diffuse = (material.diffuse > 0).any();
   const PointVisibility visibility(point, options, diffuse);
-  Rgb irradiance = Rgb::Zero();
-  if (diffuse) {
-    for (const PreparedLobe& light : lighting.lights->lobes)
-      irradiance += light.color * diffuse_integral(light, point, visibility, options);
-    for (const SphereLight& sphere : lighting.lights->spheres) {
-      const PreparedLobe light = lobe_from_sphere(sphere, point.position);
-      irradiance += light.color * diffuse_integral(light, point, visibility, options);
+  std::optional<SpecularView> specular;
+  if (material.has_specular())
+    specular = specular_view(point, outgoing, material, visibility, options);
+  const PreparedLights& lights = *lighting.lights;
+  Rgb irradiance = Rgb::Zero(), reflected = Rgb::Zero();
+  if (diffuse)
+    for (const PreparedLobe& light : lights.lobes)
+      irradiance +=
+          light.color * diffuse_integral(light.lobe, light.integral,
+                                         unshadowed_integral(light, point.frame.z, options), point,
+                                         visibility, options);
+  if (specular) reflected = light_through(*specular, lighting, options);
+  const auto add_lights = [&](const auto& list) {
+    for (const auto& source : list) {
+      const LightAtPoint light = light_at(source, point.position, point.frame.z);
+      if (!light.reaches) continue;
+      if (diffuse)
+        irradiance +=
+            light.color * diffuse_integral(light.lobe, light.integral, light.cosine_integral, point,
+                                           visibility, options);
+      if (specular) reflected += light_through(*specular, light, options);
     }
+  };
+  if (diffuse || specular) {
+    add_lights(lights.directionals);
+    add_lights(lights.spheres);
+    add_lights(lights.rectangles);
   }
   Rgb radiance = material.diffuse / kPi<float> * irradiance;
-  if (material.has_specular())
-    radiance += specular_radiance(point, outgoing, material, lighting, visibility, options);
+  if (specular) radiance += specular->weight * reflected;
   return radiance;
 }
 

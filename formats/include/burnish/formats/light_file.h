@@ -12,7 +12,7 @@ namespace burnish {
 inline constexpr int kLightFormatVersion = 1;
 
 /// A light rig as it is stored. The lobes are in the environment's own frame, as fitted; local
-/// lights are in the world. To shade: rotate_lobes(file.rig, file.world_from_environment).
+/// lights are in the world. To shade: rotate(file.rig, file.world_from_environment).
 struct LightFile {
   std::string name;    ///< for people; may be empty
   std::string source;  ///< file name of the environment the lobes were fitted to; may be empty

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "burnish/light/light_rig.h"
+#include "burnish/light/local_lights.h"
 #include "burnish/light/prefiltered_environment.h"
 #include "burnish/material/material.h"
 #include "burnish/shading/transfer.h"
@@ -43,10 +44,13 @@ struct PreparedLobe {
 /// Lights ready for shading. Immutable while shading, and may be shared between threads.
 struct PreparedLights {
   std::vector<PreparedLobe> lobes;
+  std::vector<DirectionalLight> directionals;
   std::vector<SphereLight> spheres;
+  std::vector<RectangleLight> rectangles;
 };
 
-/// Throws std::invalid_argument for a lobe that domain_error (lobe_domain.h) objects to.
+/// Leaves out black lights. Throws std::invalid_argument for a light that domain_error
+/// (lobe_domain.h, local_lights.h) objects to.
 PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options);
 
 /// What lights a frame, in the world's frame. Without an environment the specular term sees the
