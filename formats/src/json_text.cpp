@@ -214,6 +214,11 @@ double JsonPlace::number() const {
   return value.get<double>();
 }
 
+bool JsonPlace::boolean() const {
+  if (!value.is_boolean()) fail(fmt::format("is {}, expected true or false", value.type_name()));
+  return value.get<bool>();
+}
+
 float JsonPlace::float_in(float low, float high) const {
   const double found = number();
   const auto rounded = static_cast<float>(found);

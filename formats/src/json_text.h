@@ -36,6 +36,7 @@ struct JsonPlace {
   void expect_array(size_t size) const;
   std::string string() const;
   double number() const;
+  bool boolean() const;
   float float_in(float low, float high) const;  ///< a finite number in range
 };
 

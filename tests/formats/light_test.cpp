@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "burnish/formats/light_file.h"
+#include "burnish/light/local_lights.h"
 #include "files.h"
 #include "json_damage.h"
 
@@ -25,12 +26,15 @@ Vector3f random_vector(std::mt19937& random) {
   return {x, y, z};
 }
 
-LightFile random_lights(unsigned seed, int lobes, int spheres) {
+/// `locals` of each kind of light that is not a lobe.
+LightFile random_lights(unsigned seed, int lobes, int locals) {
   std::mt19937 random(seed);
   LightFile file;
   file.name = "quotes \" backslash \\ newline \n umlaut \xc3\xbc";
   file.source = "studio.hdr";
   file.fit_relative_l2 = 0.0834567890123;
+  file.fit_irradiance_relative_l2 = 0.01234567890123;
+  file.scale = 0.3f;
   file.world_from_environment =
       Eigen::AngleAxisf(1.2f, random_vector(random).normalized()).toRotationMatrix();
   for (int i = 0; i < lobes; ++i) {
@@ -42,9 +46,15 @@ LightFile random_lights(unsigned seed, int lobes, int spheres) {
     light.color = random_vector(random).array().abs() * 1e-3f;
     file.rig.lobes.push_back(light);
   }
-  for (int i = 0; i < spheres; ++i)
+  for (int i = 0; i < locals; ++i) {
+    file.rig.directionals.push_back(
+        {random_vector(random).normalized(), 0.1f * float(i), random_vector(random).array().abs()});
     file.rig.spheres.push_back({random_vector(random), std::exp(random_vector(random).x()),
                                 random_vector(random).array().abs()});
+    const Frame<float> frame = frame_from_axis<float>(random_vector(random).normalized());
+    file.rig.rectangles.push_back({random_vector(random), 3 * frame.x, 0.1f * frame.y,
+                                   random_vector(random).array().abs(), i % 2 == 0});
+  }
   return file;
 }
 
@@ -53,7 +63,9 @@ void expect_equal(const LightFile& a, const LightFile& b) {
   EXPECT_EQ(a.name, b.name);
   EXPECT_EQ(a.source, b.source);
   EXPECT_EQ(a.fit_relative_l2, b.fit_relative_l2);
+  EXPECT_EQ(a.fit_irradiance_relative_l2, b.fit_irradiance_relative_l2);
   EXPECT_EQ(a.world_from_environment, b.world_from_environment);
+  EXPECT_EQ(a.scale, b.scale);
   ASSERT_EQ(a.rig.lobes.size(), b.rig.lobes.size());
   for (size_t i = 0; i < a.rig.lobes.size(); ++i) {
     const EnvironmentLobe &l = a.rig.lobes[i], &m = b.rig.lobes[i];
@@ -70,6 +82,20 @@ void expect_equal(const LightFile& a, const LightFile& b) {
     EXPECT_EQ(a.rig.spheres[i].center, b.rig.spheres[i].center);
     EXPECT_EQ(a.rig.spheres[i].radius, b.rig.spheres[i].radius);
     EXPECT_TRUE((a.rig.spheres[i].radiance == b.rig.spheres[i].radiance).all());
+  }
+  ASSERT_EQ(a.rig.directionals.size(), b.rig.directionals.size());
+  for (size_t i = 0; i < a.rig.directionals.size(); ++i) {
+    EXPECT_EQ(a.rig.directionals[i].toward, b.rig.directionals[i].toward);
+    EXPECT_EQ(a.rig.directionals[i].angular_radius_rad, b.rig.directionals[i].angular_radius_rad);
+    EXPECT_TRUE((a.rig.directionals[i].irradiance == b.rig.directionals[i].irradiance).all());
+  }
+  ASSERT_EQ(a.rig.rectangles.size(), b.rig.rectangles.size());
+  for (size_t i = 0; i < a.rig.rectangles.size(); ++i) {
+    EXPECT_EQ(a.rig.rectangles[i].center, b.rig.rectangles[i].center);
+    EXPECT_EQ(a.rig.rectangles[i].edge_x, b.rig.rectangles[i].edge_x);
+    EXPECT_EQ(a.rig.rectangles[i].edge_y, b.rig.rectangles[i].edge_y);
+    EXPECT_EQ(a.rig.rectangles[i].two_sided, b.rig.rectangles[i].two_sided);
+    EXPECT_TRUE((a.rig.rectangles[i].radiance == b.rig.rectangles[i].radiance).all());
   }
 }
 
@@ -100,18 +126,27 @@ TEST(LightFile, IsReadableByPeople) {
   LightFile lights;
   lights.name = "one";
   lights.rig.lobes.push_back({{{}, 2, 0.1f, 1}, {1, 0.5f, 0.25f}});
+  lights.rig.directionals.push_back({{0, 1, 0}, 0.00465f, {90000, 85000, 80000}});
   lights.rig.spheres.push_back({{0, 1, 2}, 0.5f, {3, 3, 3}});
+  lights.rig.rectangles.push_back({{0, 2, 0}, {1, 0, 0}, {0, 0, 0.5f}, {10, 10, 10}, false});
   EXPECT_EQ(format_lights(lights, kName), R"({
   "format": "burnish lights",
-  "format_version": 1,
+  "format_version": 2,
   "name": "one",
   "source": "",
   "world_from_environment": [[1, 0, 0], [0, 1, 0], [0, 0, 1]],
+  "scale": 1,
   "lobes": [
     {"axis": [0, 0, 1], "tangent": [1, 0, 0], "bandwidth_x": 2, "bandwidth_y": 0.1, "color": [1, 0.5, 0.25]}
   ],
+  "directionals": [
+    {"toward": [0, 1, 0], "angular_radius_rad": 0.00465, "irradiance": [90000, 85000, 80000]}
+  ],
   "spheres": [
     {"center": [0, 1, 2], "radius": 0.5, "radiance": [3, 3, 3]}
+  ],
+  "rectangles": [
+    {"center": [0, 2, 0], "edge_x": [1, 0, 0], "edge_y": [0, 0, 0.5], "two_sided": false, "radiance": [10, 10, 10]}
   ]
 }
 )");
@@ -122,7 +157,7 @@ TEST(LightFile, IsReadableByPeople) {
 std::string example(const std::string& replace = "", const std::string& with = "") {
   std::string json = R"({
   "format": "burnish lights",
-  "format_version": 1,
+  "format_version": 2,
   "world_from_environment": [[1, 0, 0], [0, 1, 0],
                              [0, 0, 1]],
   "lobes": [
@@ -133,7 +168,13 @@ std::string example(const std::string& replace = "", const std::string& with = "
     }
   ],
   "spheres": [ {"center": [0, 1, 2], "radius": 0.5,
-                "radiance": [3, 3, 3]} ]
+                "radiance": [3, 3, 3]} ],
+  "directionals": [ {"toward": [0, 0, -1],
+                     "angular_radius_rad": 0.25, "irradiance": [4, 5, 6]} ],
+  "rectangles": [ {"center": [0, 2, 0], "edge_x": [2, 0, 0],
+                   "edge_y": [0, 0.5, 0], "two_sided": true,
+                   "power": [7, 8, 9]} ],
+  "scale": 2
 })";
   if (!replace.empty()) {
     const size_t place = json.find(replace);
@@ -150,8 +191,8 @@ TEST(LightFile, RejectsBadValuesByPathAndLine) {
   } cases[] = {
       {"burnish lights", "other", "line 2, /format:", "expected 'burnish lights'"},
       {"\"format\"", "\"fmt\"", "line 1, /:", "has no field 'format'"},
-      {"version\": 1", "version\": 0", "line 3, /format_version:", "1 or more"},
-      {"version\": 1", "version\": 1.5", "line 3, /format_version:", "integer"},
+      {"version\": 2", "version\": 0", "line 3, /format_version:", "1 or more"},
+      {"version\": 2", "version\": 1.5", "line 3, /format_version:", "integer"},
       {"\"lobes\"", "\"lobs\"", "line 6, /lobs:", "unknown field, expected one of format,"},
       {"\"bandwidth_y\"", "\"bandwidth\"", "line 10, /lobes/0/bandwidth:", "unknown field"},
       {"\"bandwidth_y\": 3,", "", "line 7, /lobes/0:", "has no field 'bandwidth_y'"},
@@ -168,6 +209,27 @@ TEST(LightFile, RejectsBadValuesByPathAndLine) {
       {"\"radius\": 0.5", "\"radius\": 0", "line 13, /spheres/0/radius:", "0, expected"},
       {"\"radiance\": [3, 3, 3]", "\"radiance\": [3, null, 3]",
        "line 14, /spheres/0/radiance/1:", "is null"},
+      {"\"radius\": 0.5,", "\"radius\": 0.5, \"power\": [1, 1, 1],",
+       "line 13, /spheres/0:", "expected one of the fields 'radiance' and 'power'"},
+      {"\"radius\": 0.5,\n                \"radiance\": [3, 3, 3]",
+       "\"radius\": 1e-5,\n                \"power\": [1e35, 3, 3]",
+       "line 14, /spheres/0/power:", "beyond the range of a float"},
+      {"[0, 0, -1]", "[0, 0, -2]", "line 15, /directionals/0/toward:", "length 2"},
+      {"0.25", "2", "line 16, /directionals/0/angular_radius_rad:", "2, expected 0..1.57"},
+      {"\"irradiance\"", "\"irradience\"", "line 16, /directionals/0/irradience:", "unknown field"},
+      {", \"irradiance\": [4, 5, 6]", "",
+       "line 15, /directionals/0:", "expected one of the fields 'radiance' and 'irradiance'"},
+      {"0.25, \"irradiance\"", "0, \"radiance\"",
+       "line 16, /directionals/0/radiance:", "at an angular radius of 0"},
+      {"\"edge_x\": [2, 0, 0]", "\"edge_x\": [0, 0, 0]",
+       "line 17, /rectangles/0/edge_x:", "length 0, expected above 0"},
+      {"[0, 0.5, 0]", "[0.1, 0.5, 0]", "line 18, /rectangles/0/edge_y:", "with edge_x, expected 0"},
+      {"true", "1", "line 18, /rectangles/0/two_sided:", "is number, expected true or false"},
+      {"[7, 8, 9]", "[7, 8, -9]", "line 19, /rectangles/0/power/2:", "-9, expected 0"},
+      {"\"center\": [0, 2, 0], ", "", "line 17, /rectangles/0:", "has no field 'center'"},
+      {"\"scale\": 2", "\"scale\": -2", "line 20, /scale:", "-2, expected 0"},
+      {"\"scale\": 2", "\"fit_irradiance_relative_l2\": -2",
+       "line 20, /fit_irradiance_relative_l2:", "expected 0 or more"},
       {"[0, 1, 0]", "[0, -1, 0]", "line 4, /world_from_environment:", "not a rotation"},
       {"[0, 0, 1]],", "[0, 0.1, 1]],", "line 4, /world_from_environment:", "not a rotation"},
       {"[0, 0, 1]],", "[0, 0, 7e200]],", "line 5, /world_from_environment/2/2:", "7e+200"},
@@ -189,7 +251,7 @@ TEST(LightFile, RejectsBadSyntaxByLineAndColumn) {
       std::string::npos);
   EXPECT_NE(parse_error(example("\"bandwidth_x\": 2", "\"bandwidth_x\": 1e999")).find("line 9"),
             std::string::npos);
-  EXPECT_NE(parse_error(example() + "{}").find("line 15"), std::string::npos);
+  EXPECT_NE(parse_error(example() + "{}").find("line 21"), std::string::npos);
   EXPECT_NE(parse_error(example() + std::string(1, '\0')).find("a zero byte"), std::string::npos);
   EXPECT_NE(parse_error(example("\"lobes\"", "\"format\"")).find("\"format\" occurs twice"),
             std::string::npos);
@@ -197,8 +259,76 @@ TEST(LightFile, RejectsBadSyntaxByLineAndColumn) {
   EXPECT_NE(parse_error(std::string(100, '[') + std::string(100, ']')).find("64 levels"),
             std::string::npos);
   EXPECT_NE(parse_error("[]").find("is array, expected an object"), std::string::npos);
-  EXPECT_EQ(parse_error(example("version\": 1", "version\": 2"), ErrorKind::unsupported),
-            kName + ": light format version 2, this build reads up to 1");
+  EXPECT_EQ(parse_error(example("version\": 2", "version\": 3"), ErrorKind::unsupported),
+            kName + ": light format version 3, this build reads up to 2");
+}
+
+TEST(LightFile, TakesPowersRadiancesAndIrradiances) {
+  const LightFile given = parse_lights(example(), kName);
+  const RectangleLight& panel = given.rig.rectangles.at(0);
+  // 2 x 0.5 on two sides: power / (2 pi) per unit of area; floats.
+  EXPECT_LT((panel.radiance - Rgb(7, 8, 9) / (2 * kPi<float>)).abs().maxCoeff(), 1e-6);
+  EXPECT_TRUE(panel.two_sided);
+  EXPECT_EQ(given.rig.directionals.at(0).irradiance.y(), 5);
+  EXPECT_EQ(given.scale, 2);
+  const LightFile one_sided =
+      parse_lights(example("\"two_sided\": true,\n                   ", ""), kName);
+  EXPECT_FALSE(one_sided.rig.rectangles.at(0).two_sided);
+  EXPECT_LT((one_sided.rig.rectangles[0].radiance - 2 * panel.radiance).abs().maxCoeff(), 1e-6);
+  // pi sin^2 of the angular radius; 4 pi^2 times the square of the radius.
+  const LightFile sun = parse_lights(example("\"irradiance\"", "\"radiance\""), kName);
+  EXPECT_NEAR(sun.rig.directionals.at(0).irradiance.x(),
+              4 * kPi<double> * std::pow(std::sin(0.25), 2), 1e-5);
+  const LightFile bulb =
+      parse_lights(example("\"radiance\": [3, 3, 3]", "\"power\": [3, 3, 3]"), kName);
+  EXPECT_NEAR(bulb.rig.spheres.at(0).radiance.x(), 3 / (kPi<double> * kPi<double>), 1e-6);
+}
+
+TEST(LightFile, WorldLightsAreTurnedAndScaled) {
+  LightFile file = random_lights(3, 2, 2);
+  file.scale = 4;
+  const LightRig rig = world_lights(file);
+  EXPECT_TRUE((rig.lobes[1].color == 4 * file.rig.lobes[1].color).all());
+  EXPECT_TRUE((rig.spheres[1].radiance == 4 * file.rig.spheres[1].radiance).all());
+  EXPECT_EQ(rig.spheres[1].center, file.rig.spheres[1].center);
+  EXPECT_TRUE(rig.directionals[1].toward.isApprox(
+      file.world_from_environment * file.rig.directionals[1].toward, 1e-6f));  // float
+  EXPECT_TRUE(rig.lobes[1].lobe.frame.z.isApprox(
+      file.world_from_environment * file.rig.lobes[1].lobe.frame.z, 1e-6f));
+}
+
+/// tests/data/lights/version1.json was written by burnish when version 1 was the newest, from the
+/// values that are expected here.
+TEST(LightFile, VersionOneStaysReadable) {
+  const std::string path = std::string(BURNISH_TEST_DATA) + "/lights/version1.json";
+  const LightFile file = read_lights(path);
+  EXPECT_EQ(file.name, "studio");
+  EXPECT_EQ(file.source, "studio.hdr");
+  EXPECT_EQ(file.fit_relative_l2, 0.0834567890123);
+  EXPECT_FALSE(file.fit_irradiance_relative_l2.has_value());
+  EXPECT_EQ(file.scale, 1);
+  EXPECT_EQ(file.world_from_environment.row(0), Eigen::RowVector3f(0, 0, 1));
+  ASSERT_EQ(file.rig.lobes.size(), 2u);
+  const EnvironmentLobe& lobe = file.rig.lobes[1];
+  EXPECT_EQ(lobe.lobe.frame.z, Vector3f(0.6f, 0, 0.8f));
+  EXPECT_EQ(lobe.lobe.frame.x, Vector3f(0, 1, 0));
+  EXPECT_EQ(lobe.lobe.bandwidth_x, 12.5f);
+  EXPECT_EQ(lobe.lobe.bandwidth_y, 0.75f);
+  EXPECT_TRUE((lobe.color == Rgb(0.001f, 2, 3e6f)).all());
+  ASSERT_EQ(file.rig.spheres.size(), 1u);
+  EXPECT_EQ(file.rig.spheres[0].center, Vector3f(-1, 2.5f, 0.125f));
+  EXPECT_EQ(file.rig.spheres[0].radius, 0.0625f);
+  EXPECT_TRUE((file.rig.spheres[0].radiance == Rgb(10, 20, 30)).all());
+  EXPECT_TRUE(file.rig.directionals.empty() && file.rig.rectangles.empty());
+  // What is new in version 2 is unknown to version 1.
+  EXPECT_NE(parse_error(R"({"format": "burnish lights", "format_version": 1,
+  "scale": 2})")
+                .find("line 2, /scale: unknown field"),
+            std::string::npos);
+  EXPECT_NE(parse_error(R"({"format": "burnish lights", "format_version": 1, "spheres":
+  [{"center": [0, 0, 0], "radius": 1, "power": [1, 1, 1]}]})")
+                .find("power: unknown field"),
+            std::string::npos);
 }
 
 TEST(LightFile, FramesAreMadeOrthonormal) {
@@ -211,6 +341,10 @@ TEST(LightFile, FramesAreMadeOrthonormal) {
   matrix << frame.x, frame.y, frame.z;
   EXPECT_TRUE((matrix.transpose() * matrix).isIdentity(1e-6f));  // a few roundings of float
   EXPECT_NEAR(matrix.determinant(), 1, 1e-6f);
+  const LightFile skewed = parse_lights(example("[0, 0.5, 0]", "[0.0002, 0.5, 0]"), kName);
+  const RectangleLight& panel = skewed.rig.rectangles.at(0);
+  EXPECT_EQ(domain_error(panel), "");
+  EXPECT_NEAR(panel.edge_y.y(), 0.5, 1e-6);
   const LightFile turned = parse_lights(example("[[1, 0, 0]", "[[1.0004, 0, 0]"), kName);
   EXPECT_TRUE((turned.world_from_environment.transpose() * turned.world_from_environment)
                   .isIdentity(1e-6f));
@@ -232,6 +366,9 @@ TEST(LightFile, WriterRejectsWhatCannotBeReadBack) {
   EXPECT_NE(write_error([](LightFile& l) { l.rig.lobes[0].lobe.bandwidth_x = INFINITY; }), "");
   EXPECT_NE(write_error([](LightFile& l) { l.world_from_environment *= 2; }), "");
   EXPECT_NE(write_error([](LightFile& l) { l.fit_relative_l2 = -0.1; }), "");
+  EXPECT_NE(write_error([](LightFile& l) { l.scale = NAN; }), "");
+  EXPECT_NE(write_error([](LightFile& l) { l.rig.directionals[0].toward *= 3; }), "");
+  EXPECT_NE(write_error([](LightFile& l) { l.rig.rectangles[0].edge_y.setZero(); }), "");
   EXPECT_EQ(folder.file_count(), 0u);
 }
 
