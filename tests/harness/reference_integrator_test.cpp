@@ -192,6 +192,69 @@ TEST(ReferenceIntegrator, OnlyWhatIsNearerThanASphereLightShadowsIt) {
   }
 }
 
+TEST(ReferenceIntegrator, DirectionalLightGivesItsIrradiance) {
+  const RayScene empty = scene_of({});
+  for (const float radius : {0.0f, 0.00465f, 0.5f}) {
+    const DirectionalLight light{Vector3f(0.6f, 0.8f, 0), radius, Rgb(3, 0, 0)};
+    for (const SamplingTechnique technique : kTechniques) {
+      if (technique == SamplingTechnique::brdf_only && radius < 0.1f) continue;  // hardly ever hits
+      expect_estimate(diffuse_radiance(empty, {.directionals = {&light, 1}}, Vector3f(5, 6, 7),
+                                       Vector3f::UnitY(), technique),
+                      3 * 0.8 / kPi<double>, 1e-6, 0.02, kTechniqueNames[int(technique)]);
+    }
+  }
+}
+
+TEST(ReferenceIntegrator, RectangleLightGivesItsFormFactor) {
+  const RayScene empty = scene_of({});
+  RectangleLight light{Vector3f(0.3f, 1.5f, -0.2f), Vector3f(1.2f, 0.3f, 0), Vector3f(0, 0, -0.8f),
+                       Rgb(2, 0, 0), false};
+  const Vector3d center = light.center.cast<double>();
+  const Vector3d x = light.edge_x.cast<double>() / 2, y = light.edge_y.cast<double>() / 2;
+  const std::vector<Vector3d> corners = {center - x - y, center + x - y, center + x + y,
+                                         center - x + y};
+  for (const Vector3f& position : {Vector3f(0, 0, 0), Vector3f(0.3f, 1.2f, -0.2f)}) {
+    const double truth =
+        2 * polygon_form_factor(position.cast<double>(), Vector3d::UnitY(), corners);
+    for (const bool two_sided : {false, true}) {
+      // edge_x x edge_y points up: turned round, its back is to the point.
+      for (const float turn : {1.0f, -1.0f}) {
+        light.two_sided = two_sided;
+        light.edge_y.z() = turn * 0.8f;
+        for (const SamplingTechnique technique : kTechniques)
+          expect_estimate(diffuse_radiance(empty, {.rectangles = {&light, 1}}, position,
+                                           Vector3f::UnitY(), technique),
+                          two_sided || turn > 0 ? truth : 0, 1e-6, 0.02,
+                          kTechniqueNames[int(technique)]);
+      }
+    }
+  }
+}
+
+TEST(ReferenceIntegrator, OnlyWhatIsBeforeARectangleLightShadowsIt) {
+  const RectangleLight light{Vector3f(0, 2, 0), Vector3f(0.5f, 0, 0), Vector3f(0, 0, 0.5f),
+                             Rgb::Constant(4), true};
+  const auto scene_with_ceiling = [](float height) {
+    TriangleMesh ceiling;
+    append_rectangle(ceiling, Vector3f(-9, height, -9), Vector3f(0, 0, 18), Vector3f(18, 0, 0), 1,
+                     1);
+    return scene_of({&ceiling, 1});
+  };
+  for (const SamplingTechnique technique : kTechniques) {
+    const auto lit = [&](float ceiling) {
+      return diffuse_radiance(scene_with_ceiling(ceiling), {.rectangles = {&light, 1}},
+                              Vector3f::Zero(), Vector3f::UnitY(), technique);
+    };
+    EXPECT_EQ(lit(1.0f).mean.x(), 0) << "a ceiling before the light";
+    const double truth =
+        4 * polygon_form_factor(
+                Vector3d::Zero(), Vector3d::UnitY(),
+                {{-0.25, 2, -0.25}, {0.25, 2, -0.25}, {0.25, 2, 0.25}, {-0.25, 2, 0.25}});
+    expect_estimate(lit(3.0f), truth, 1e-6, 3e-3, "a ceiling behind the light");
+    expect_estimate(lit(2.0f), truth, 1e-6, 3e-3, "a light on the ceiling");
+  }
+}
+
 /// Integral of the specular BRDF times the cosine over the hemisphere, by the midpoint rule over
 /// incoming directions.
 double specular_albedo(const Material& material, const Vector3f& outgoing) {
@@ -243,8 +306,11 @@ TEST(ReferenceIntegrator, TechniquesAgreeOnARealScene) {
   const RayScene rays = scene_of({&scene.mesh, 1});
   const Image studio = studio_environment(128);
   const SphereLight lamp{Vector3f(0.5f, 0.9f, 0.4f), 0.2f, Rgb::Constant(5.0f)};
-  const ReferenceLights lights{{&studio, world_from_environment(Vector3f::UnitY(), 40)},
-                               {&lamp, 1}};
+  const DirectionalLight sun{Vector3f(0.6f, 0.8f, 0), 0.1f, Rgb::Constant(2)};
+  const RectangleLight panel{Vector3f(-0.3f, 1, 0), Vector3f(0, 0, 0.7f), Vector3f(0.4f, 0, 0),
+                             Rgb::Constant(3), true};
+  const ReferenceLights lights{
+      {&studio, world_from_environment(Vector3f::UnitY(), 40)}, {&lamp, 1}, {&sun, 1}, {&panel, 1}};
   const Material material{.diffuse = Rgb::Constant(0.3f),
                           .specular = Rgb::Constant(0.4f),
                           .model = SpecularModel::ward,

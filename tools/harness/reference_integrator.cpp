@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "burnish/light/local_lights.h"
 #include "harness/parallel_progress.h"
 
 namespace burnish {
@@ -12,7 +13,7 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Pairs of dimensions of a sample.
-enum : std::uint32_t { kEnvironmentPair, kBrdfPair, kChoicePair, kFirstSpherePair };
+enum : std::uint32_t { kEnvironmentPair, kBrdfPair, kChoicePair, kFirstLightPair };
 
 /// Into [0, 1) as float: rounding a double just below one would give one.
 float below_one(double uniform) {
@@ -34,45 +35,143 @@ double brdf_pdf(const ReferenceIntegrator::Point& point, const Vector3f& incomin
   return pdf;
 }
 
+/// A uniform direction of the cone around a unit axis, of a height 1 - cos(its radius).
+Vector3d sample_cone(const Vector3d& axis, double height, const Uniform2& uniform) {
+  const double drop = uniform.u * height;  // 1 - cos of the angle to the axis
+  const double sine = std::sqrt(std::max(drop * (2 - drop), 0.0));
+  const double angle = 2 * kPi<double> * uniform.v;
+  const Vector3d local(sine * std::cos(angle), sine * std::sin(angle), 1 - drop);
+  return frame_from_axis<double>(axis).to_world(local);
+}
+
+double pdf_cone(double height) { return 1 / (2 * kPi<double> * height); }
+
+/// A direction drawn from a light: the distance of the light there, and its density per sr (0: the
+/// light is not seen).
+struct LightSample {
+  Vector3d direction = Vector3d::UnitZ();
+  double distance = 0, pdf = 0;
+};
+
+/// Where a ray meets a light: its distance, negative if it does not, and with which density the
+/// light's own technique draws the ray's direction.
+struct LightHit {
+  double distance = -1, pdf = 0;
+};
+
 /// A sphere light as seen from a point.
 struct SphereView {
+  Eigen::Array3d radiance;
   Vector3d to_center;
   double distance2, radius2;
   bool inside;
-  double one_minus_cos;  ///< of the cone it fills; 2 inside
+  double height;  ///< 1 - cos of the cone it fills; 2 inside
 
   SphereView(const SphereLight& sphere, const Vector3f& position)
-      : to_center(sphere.center.cast<double>() - position.cast<double>()),
+      : radiance(sphere.radiance.cast<double>()),
+        to_center(sphere.center.cast<double>() - position.cast<double>()),
         distance2(to_center.squaredNorm()),
         radius2(double(sphere.radius) * sphere.radius),
         inside(distance2 <= radius2),
-        one_minus_cos(2) {
+        height(2) {
     if (inside) return;
     const double sine2 = radius2 / distance2;
-    one_minus_cos = sine2 / (1 + std::sqrt(1 - sine2));
+    height = sine2 / (1 + std::sqrt(1 - sine2));
   }
 
-  double pdf() const { return 1 / (2 * kPi<double> * one_minus_cos); }
-
-  Vector3d sample(const Uniform2& uniform) const {
-    const double drop = uniform.u * one_minus_cos;  // 1 - cos of the angle to the axis
-    const double sine = std::sqrt(std::max(drop * (2 - drop), 0.0));
-    const double angle = 2 * kPi<double> * uniform.v;
-    const Vector3d local(sine * std::cos(angle), sine * std::sin(angle), 1 - drop);
+  LightSample sample(const Uniform2& uniform) const {
     // At the very centre there is no axis; the whole sphere is sampled there, so any will do.
     const Vector3d axis = distance2 > 0 ? to_center.normalized() : Vector3d::UnitZ();
-    return frame_from_axis<double>(axis).to_world(local);
+    const Vector3d direction = sample_cone(axis, height, uniform);
+    // A direction on the very edge may miss by a rounding: the light is then at the tangent point.
+    const LightHit hit = meet(direction);
+    const double tangent = std::sqrt(std::max(distance2 - radius2, 0.0));
+    return {direction, hit.distance >= 0 ? hit.distance : tangent, pdf_cone(height)};
   }
 
-  /// Where a ray meets the light's surface from the point's side; negative if it does not.
-  double distance_along(const Vector3d& direction) const {
+  LightHit meet(const Vector3d& direction) const {
     const double along = to_center.dot(direction);
     const double miss2 = to_center.cross(direction).squaredNorm();
-    if (miss2 > radius2 || (!inside && along <= 0)) return -1;
+    if (miss2 > radius2 || (!inside && along <= 0)) return {};
     const double half_chord = std::sqrt(radius2 - miss2);
-    return inside ? along + half_chord : along - half_chord;
+    return {inside ? along + half_chord : along - half_chord, pdf_cone(height)};
   }
 };
+
+/// A directional light as seen from any point.
+struct DirectionalView {
+  Eigen::Array3d radiance;
+  Vector3d toward;
+  double height;  ///< 1 - cos of the cone it fills
+
+  DirectionalView(const DirectionalLight& light, const Vector3f& /*position*/)
+      : toward(light.toward.cast<double>().normalized()) {
+    const double radius = shaded_angular_radius(light);
+    const double sine = std::sin(radius), half_sine = std::sin(radius / 2);
+    radiance = light.irradiance.cast<double>() / (kPi<double> * sine * sine);
+    height = 2 * half_sine * half_sine;
+  }
+
+  LightSample sample(const Uniform2& uniform) const {
+    return {sample_cone(toward, height, uniform), kInfinity, pdf_cone(height)};
+  }
+
+  LightHit meet(const Vector3d& direction) const {
+    // 1 - cos of the angle, without cancellation.
+    if ((direction - toward).squaredNorm() / 2 > height) return {};
+    return {kInfinity, pdf_cone(height)};
+  }
+};
+
+/// A rectangle light as seen from a point. Points of its surface are drawn evenly.
+struct RectangleView {
+  Eigen::Array3d radiance;
+  Vector3d to_center, edge_x, edge_y, normal;
+  double area;
+  bool shines;  ///< toward the point
+
+  RectangleView(const RectangleLight& light, const Vector3f& position)
+      : radiance(light.radiance.cast<double>()),
+        to_center(light.center.cast<double>() - position.cast<double>()),
+        edge_x(light.edge_x.cast<double>()),
+        edge_y(light.edge_y.cast<double>()) {
+    const Vector3d cross = edge_x.cross(edge_y);
+    area = cross.norm();
+    normal = cross / area;
+    const double height = normal.dot(to_center);
+    shines = light.two_sided ? height != 0 : height < 0;
+  }
+
+  double pdf(const Vector3d& direction, double distance) const {
+    return distance * distance / (area * std::abs(normal.dot(direction)));
+  }
+
+  LightSample sample(const Uniform2& uniform) const {
+    if (!shines) return {};
+    const Vector3d offset = to_center + (uniform.u - 0.5) * edge_x + (uniform.v - 0.5) * edge_y;
+    const double distance = offset.norm();
+    const Vector3d direction = offset / distance;
+    return {direction, distance, pdf(direction, distance)};
+  }
+
+  LightHit meet(const Vector3d& direction) const {
+    const double distance = normal.dot(to_center) / normal.dot(direction);
+    if (!shines || !(distance > 0 && distance < kInfinity)) return {};
+    const Vector3d offset = distance * direction - to_center;
+    if (std::abs(offset.dot(edge_x)) > edge_x.squaredNorm() / 2 ||
+        std::abs(offset.dot(edge_y)) > edge_y.squaredNorm() / 2)
+      return {};
+    return {distance, pdf(direction, distance)};
+  }
+};
+
+/// Calls f(view) for every light but the environment, always in the same order.
+template <class F>
+void for_each_light(const ReferenceLights& lights, const Vector3f& position, const F& f) {
+  for (const SphereLight& light : lights.spheres) f(SphereView(light, position));
+  for (const DirectionalLight& light : lights.directionals) f(DirectionalView(light, position));
+  for (const RectangleLight& light : lights.rectangles) f(RectangleView(light, position));
+}
 
 /// 1 / density, by which a sample's value is multiplied: of the technique that drew it alone, or of
 /// both by the balance heuristic.
@@ -139,8 +238,10 @@ ReferenceIntegrator::Point ReferenceIntegrator::prepare(const Vector3f& position
 
 bool ReferenceIntegrator::occluded(const Point& point, const Vector3d& direction,
                                    double distance) const {
-  return shadowing_.occluded(point.ray_origin, direction.cast<float>(),
-                             static_cast<float>(distance));
+  // The ray starts off the surface, nearer to the light, and ends as far before the light, so that
+  // a surface that the light lies on does not shadow it.
+  const double end = std::max(distance - 2.0 * double(shadowing_.origin_offset()), 0.0);
+  return shadowing_.occluded(point.ray_origin, direction.cast<float>(), static_cast<float>(end));
 }
 
 Eigen::Array3d ReferenceIntegrator::sample_environment(const Point& point, const Uniform2& uniform,
@@ -152,19 +253,17 @@ Eigen::Array3d ReferenceIntegrator::sample_environment(const Point& point, const
          sample_weight(light.pdf, brdf_pdf(point, incoming.local), technique);
 }
 
-Eigen::Array3d ReferenceIntegrator::sample_sphere(const Point& point, const SphereLight& sphere,
-                                                  const Uniform2& uniform,
-                                                  SamplingTechnique technique) const {
-  const SphereView view(sphere, point.position);
-  const Incoming incoming(point, view.sample(uniform));
-  if (incoming.dark()) return Eigen::Array3d::Zero();
-  // A direction on the very edge may miss by a rounding: the light is then at the tangent point.
-  const double distance = view.distance_along(incoming.world);
-  const double tangent = std::sqrt(std::max(view.distance2 - view.radius2, 0.0));
-  if (occluded(point, incoming.world, distance >= 0 ? distance : tangent))
+template <class LightView>
+Eigen::Array3d ReferenceIntegrator::sample_light(const Point& point, const LightView& view,
+                                                 const Uniform2& uniform,
+                                                 SamplingTechnique technique) const {
+  const LightSample light = view.sample(uniform);
+  if (!(light.pdf > 0)) return Eigen::Array3d::Zero();
+  const Incoming incoming(point, light.direction);
+  if (incoming.dark() || occluded(point, incoming.world, light.distance))
     return Eigen::Array3d::Zero();
-  return incoming.response * sphere.radiance.cast<double>() *
-         sample_weight(view.pdf(), brdf_pdf(point, incoming.local), technique);
+  return incoming.response * view.radiance *
+         sample_weight(light.pdf, brdf_pdf(point, incoming.local), technique);
 }
 
 Eigen::Array3d ReferenceIntegrator::sample_brdf(const Point& point, const Uniform2& uniform,
@@ -184,12 +283,11 @@ Eigen::Array3d ReferenceIntegrator::sample_brdf(const Point& point, const Unifor
     sum += radiance.cast<double>() *
            sample_weight(pdf, environment_->pdf_of_radiance(radiance), technique);
   }
-  for (const SphereLight& sphere : lights_.spheres) {
-    const SphereView view(sphere, point.position);
-    const double distance = view.distance_along(incoming.world);
-    if (distance < 0 || (blocked && occluded(point, incoming.world, distance))) continue;
-    sum += sphere.radiance.cast<double>() * sample_weight(pdf, view.pdf(), technique);
-  }
+  for_each_light(lights_, point.position, [&](const auto& view) {
+    const LightHit hit = view.meet(incoming.world);
+    if (hit.distance < 0 || (blocked && occluded(point, incoming.world, hit.distance))) return;
+    sum += view.radiance * sample_weight(pdf, hit.pdf, technique);
+  });
   return sum * incoming.response;
 }
 
@@ -200,9 +298,10 @@ Eigen::Array3d ReferenceIntegrator::sample(const Point& point, const SampleSeque
   if (technique != SamplingTechnique::brdf_only) {
     if (environment_)
       sum += sample_environment(point, sequence(index, kEnvironmentPair), technique);
-    for (std::uint32_t i = 0; i < lights_.spheres.size(); ++i)
-      sum += sample_sphere(point, lights_.spheres[i], sequence(index, kFirstSpherePair + i),
-                           technique);
+    std::uint32_t pair = kFirstLightPair;
+    for_each_light(lights_, point.position, [&](const auto& view) {
+      sum += sample_light(point, view, sequence(index, pair++), technique);
+    });
   }
   if (technique != SamplingTechnique::lights_only)
     sum +=

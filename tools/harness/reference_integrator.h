@@ -19,7 +19,7 @@ namespace burnish {
 /// Which samples are taken. The single techniques exist to check the combined one.
 enum class SamplingTechnique {
   combined,     ///< lights and BRDF, by the balance heuristic
-  lights_only,  ///< directions drawn from the map and the spheres
+  lights_only,  ///< directions drawn from the map and the other lights
   brdf_only,    ///< directions drawn from the BRDF
 };
 
@@ -32,11 +32,14 @@ struct ReferenceOptions {
   SamplingTechnique technique = SamplingTechnique::combined;
 };
 
-/// The lights the integrator sees. Spheres do not occlude and are not seen by cameras; a point
-/// inside one receives its radiance from every direction.
+/// The lights the integrator sees, all in the world. Local lights do not occlude and are not seen
+/// by cameras; a point inside a sphere receives its radiance from every direction. Directional
+/// lights have the size that shading gives them (local_lights.h).
 struct ReferenceLights {
-  EnvironmentLight environment;
-  std::span<const SphereLight> spheres;
+  EnvironmentLight environment = {};
+  std::span<const SphereLight> spheres = {};
+  std::span<const DirectionalLight> directionals = {};
+  std::span<const RectangleLight> rectangles = {};
 };
 
 /// Radiance of points toward a viewer. Thread-safe; keeps references to its arguments' data.
@@ -65,8 +68,9 @@ class ReferenceIntegrator {
  private:
   struct Incoming;
   Eigen::Array3d sample_environment(const Point&, const Uniform2&, SamplingTechnique) const;
-  Eigen::Array3d sample_sphere(const Point&, const SphereLight&, const Uniform2&,
-                               SamplingTechnique) const;
+  template <class LightView>
+  Eigen::Array3d sample_light(const Point&, const LightView&, const Uniform2&,
+                              SamplingTechnique) const;
   Eigen::Array3d sample_brdf(const Point&, const Uniform2&, double choice, SamplingTechnique) const;
   bool occluded(const Point& point, const Vector3d& direction, double distance) const;
 
