@@ -66,6 +66,7 @@ LightRig fit_studio(const Options& options, const Image& studio, Work& work,
   LightFile file;
   file.name = "studio";
   file.fit_relative_l2 = fit.error.relative_l2;
+  file.fit_irradiance_relative_l2 = fit.error.irradiance_relative_l2;
   file.rig = fit.rig;
   write_lights(file, options.file(".lights.json"));
   report["fit"] = {{"lobes", fit.rig.lobes.size()},

@@ -37,6 +37,7 @@ void run(const Options& options) {
   LightFile file;
   file.source = std::filesystem::path(options.environment).filename().string();
   file.fit_relative_l2 = fit.error.relative_l2;
+  file.fit_irradiance_relative_l2 = fit.error.irradiance_relative_l2;
   file.rig = fit.rig;
   write_lights(file, options.output);
   write_json(options.common.report, {{"environment", options.environment},

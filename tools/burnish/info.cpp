@@ -150,8 +150,13 @@ Json lights_info(const std::string& path) {
   info["name"] = file.name;
   info["source"] = file.source;
   info["lobes"] = file.rig.lobes.size();
+  info["directional_lights"] = file.rig.directionals.size();
   info["sphere_lights"] = file.rig.spheres.size();
-  info["fit_relative_l2"] = file.fit_relative_l2 ? Json(*file.fit_relative_l2) : Json();
+  info["rectangle_lights"] = file.rig.rectangles.size();
+  info["scale"] = file.scale;
+  const auto error = [](const auto& value) { return value ? Json(*value) : Json(); };
+  info["fit_relative_l2"] = error(file.fit_relative_l2);
+  info["fit_irradiance_relative_l2"] = error(file.fit_irradiance_relative_l2);
   // What the lobes give a white diffuse surface in the open, averaged over all normals, is a
   // quarter of this.
   Rgb power = Rgb::Zero();
@@ -211,7 +216,7 @@ void print_text(const Json& info) {
     // A line for each object of a list.
     const bool is_table = value.is_array() && !value.empty() && value.front().is_object();
     for (const Json& line : is_table ? value : Json::array({value})) {
-      fmt::print("{:<22}{}\n", label, value_text(line));
+      fmt::print("{:<21} {}\n", label, value_text(line));
       label.clear();
     }
   }

@@ -117,15 +117,21 @@ Look load_look(const LookOptions& options, Work& work) {
   look.report = {{"transfer", options.transfer}, {"environment", options.environment}};
   LightFile lights = load_lights(options, look.environment, work, look.report);
   throw_if_interrupted();
-  // A light file's own rotation turns lights and map alike, so that they stay the same light.
+  // A light file's own rotation and scale change lights and map alike, so that they stay the same
+  // light.
   look.world_from_environment =
       world_from_environment(up_direction(options.up), options.rotate_deg) *
       lights.world_from_environment;
   look.rig = std::move(lights.rig);
   rotate(look.rig, look.world_from_environment);
+  scale(look.rig, lights.scale);
+  if (lights.scale != 1)
+    for (Rgb& pixel : look.environment.pixels) pixel *= lights.scale;
   look.lights = prepare_lights(look.rig, options.shading);
   look.report["lobes"] = look.rig.lobes.size();
+  look.report["directional_lights"] = look.rig.directionals.size();
   look.report["sphere_lights"] = look.rig.spheres.size();
+  look.report["rectangle_lights"] = look.rig.rectangles.size();
 
   const bool has_map = !look.environment.pixels.empty();
   look.specular_from_map = options.specular_from_map && has_map;

@@ -11,6 +11,7 @@
 #include "common/work.h"
 #include "harness/camera.h"
 #include "harness/picture.h"
+#include "harness/reference_integrator.h"
 
 namespace burnish::tools {
 
@@ -49,6 +50,9 @@ struct Look {
   Lighting lighting() const { return {&lights, specular_from_map ? &filtered : nullptr}; }
   EnvironmentLight environment_light() const {
     return {environment.pixels.empty() ? nullptr : &environment, world_from_environment};
+  }
+  ReferenceLights reference_lights() const {
+    return {environment_light(), rig.spheres, rig.directionals, rig.rectangles};
   }
 };
 

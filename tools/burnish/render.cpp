@@ -70,8 +70,6 @@ void check(const Options& options) {
     throw UsageError("--compare: found no reference to compare with, expected --reference SPP");
   if (options.reference_samples > 0 && options.turntable > 0)
     throw UsageError("--turntable and --reference: found both, expected one of them");
-  if (options.reference_samples > 0 && options.look.environment.empty())
-    throw UsageError("--reference: found no environment map, expected --env");
   const std::int64_t samples =
       std::int64_t{options.width} * options.height * options.antialias * options.antialias;
   if (samples > kMaxSamples)
@@ -110,8 +108,8 @@ nlohmann::ordered_json render_truth(const Options& options, const Look& look,
                                     const PrimaryHits& hits, const Picture& baked, Work& work) {
   const Stopwatch watch;
   const ReferenceOptions sampling = {.samples = options.reference_samples, .seed = options.seed};
-  const Picture truth = render_reference(
-      subject, rays, hits, {look.environment_light(), look.rig.spheres}, sampling, work.progress());
+  const Picture truth =
+      render_reference(subject, rays, hits, look.reference_lights(), sampling, work.progress());
   const double seconds = watch.seconds();
   write_picture(truth.radiance, with_infix(options.outputs, "reference"), options.exposure_stops);
   if (!options.compare.empty()) {
@@ -131,6 +129,9 @@ void run(const Options& options) {
   check(options);
   Work work(options.common);
   const Look look = load_look(options.look, work);
+  // The truth is that of a map; lobes are what shading makes of it.
+  if (options.reference_samples > 0 && look.environment.pixels.empty() && !look.rig.lobes.empty())
+    throw UsageError("--reference: found lobes without their environment map, expected --env");
   const SceneRays rays(look.transfer);
   const std::vector<Material> materials = {options.look.material};
   const Subject subject = {&look.transfer, materials, {}};
