@@ -198,7 +198,8 @@ LightAtPoint light_at(const RectangleLight& light, const Vector3f& position,
   if (!seen.visible) return {};
   const Vector3d local_normal = seen.frame.to_local(normal.cast<double>());
   const auto is_above = [&](const Vector3d& corner) { return local_normal.dot(corner) > 0; };
-  if (std::none_of(seen.corners.begin(), seen.corners.end(), is_above)) return {};
+  const auto above = std::count_if(seen.corners.begin(), seen.corners.end(), is_above);
+  if (above == 0) return {};
   const RectangleMoments moments = moments_in_frame(seen);
   const double length = moments.mean.norm();
   if (!(moments.solid_angle > 0 && length > 0)) return {};
@@ -223,8 +224,10 @@ LightAtPoint light_at(const RectangleLight& light, const Vector3f& position,
       bandwidth_of_second_moment((mean_square + radius) / moments.solid_angle);
   result.lobe.bandwidth_y =
       bandwidth_of_second_moment(std::max(mean_square - radius, 0.0) / moments.solid_angle);
+  const double cosine = above == 4 ? std::max(local_normal.dot(moments.mean), 0.0)
+                                   : clipped_cosine_integral(seen, local_normal);
   set_energy(result, light.radiance, static_cast<float>(moments.solid_angle),
-             static_cast<float>(clipped_cosine_integral(seen, local_normal)));
+             static_cast<float>(cosine));
   return result;
 }
 

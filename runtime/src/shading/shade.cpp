@@ -191,13 +191,13 @@ float unshadowed_integral(const PreparedLobe& light, const Vector3f& normal,
 /// The specular part of a material at a point, Eq. 30: light through `lobe`, times `weight`.
 struct SpecularView {
   AnisotropicGaussian<float> lobe;  ///< over incoming directions
-  float integral;                   ///< of the lobe
+  float integral = 0;               ///< of the lobe; left 0 where only lobes give light
   Rgb weight;                       ///< smooth factor, cosine and visibility
 };
 
 /// Nothing where the lobe is hidden or below the horizon.
 std::optional<SpecularView> specular_view(const ShadingPoint& point, const Vector3f& outgoing,
-                                          const Material& material,
+                                          const Material& material, const Lighting& lighting,
                                           const PointVisibility& visibility,
                                           const ShadingOptions& options) {
   AnisotropicGaussian<float> half_lobe = specular_lobe(material);
@@ -211,7 +211,11 @@ std::optional<SpecularView> specular_view(const ShadingPoint& point, const Vecto
   if (visible <= 0) return {};
   const Rgb smooth = specular_smooth_factor(material, point.frame.to_local(outgoing),
                                             point.frame.to_local(lobe.frame.z));
-  return SpecularView{lobe, integral(lobe, options.integral), smooth * (cosine * visible)};
+  const PreparedLights& lights = *lighting.lights;
+  const bool only_lobes = !lighting.environment && lights.directionals.empty() &&
+                          lights.spheres.empty() && lights.rectangles.empty();
+  return SpecularView{lobe, only_lobes ? 0.0f : integral(lobe, options.integral),
+                      smooth * (cosine * visible)};
 }
 
 /// Integral of the distant environment's radiance times the lobe.
@@ -279,7 +283,7 @@ Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing, const Mater
   const PointVisibility visibility(point, options, diffuse);
   std::optional<SpecularView> specular;
   if (material.has_specular())
-    specular = specular_view(point, outgoing, material, visibility, options);
+    specular = specular_view(point, outgoing, material, lighting, visibility, options);
   const PreparedLights& lights = *lighting.lights;
   Rgb irradiance = Rgb::Zero(), reflected = Rgb::Zero();
   if (diffuse)
