@@ -16,7 +16,9 @@
 #include "light_fit/compact_source.h"
 #include "light_fit/environment_cells.h"
 #include "light_fit/flux.h"
+#include "light_fit/light_fit_error.h"
 #include "light_fit/lobe_pursuit.h"
+#include "light_fit/reduced_environment.h"
 
 namespace burnish {
 namespace {
@@ -40,6 +42,8 @@ void check(const Image& environment, const LightFitOptions& options) {
     refuse(fmt::format("{} lobes, expected 1..128", options.lobes));
   if (!in_range(options.cells, 256, 16384))
     refuse(fmt::format("{} cells, expected 256..16384", options.cells));
+  if (!in_range(options.target_error, 0.0, 1.0))
+    refuse(fmt::format("target error {}, expected 0..1", options.target_error));
   if (!in_range(options.irradiance_weight, 0.0, 1e6))
     refuse(fmt::format("irradiance weight {}, expected 0..1e6", options.irradiance_weight));
   if (!in_range(options.min_bandwidth, 1e-6, 1e8) ||
@@ -60,9 +64,10 @@ void check(const Image& environment, const LightFitOptions& options) {
 }
 
 LightFitTarget make_target(const Image& environment, const std::vector<EnvironmentCell>& cells,
-                           double irradiance_weight) {
+                           const LightFitOptions& options) {
   const auto count = static_cast<Eigen::Index>(cells.size());
   LightFitTarget target;
+  target.signed_colors = options.signed_colors;
   target.scale.resize(count);
   Eigen::MatrixXd radiance(count, 3);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -82,7 +87,7 @@ LightFitTarget make_target(const Image& environment, const std::vector<Environme
   }
   const double radiance_norm = (target.scale.asDiagonal() * radiance).norm();
   target.scale /= radiance_norm;
-  target.irradiance_scale = irradiance_weight / irradiance.norm();
+  target.irradiance_scale = options.irradiance_weight / irradiance.norm();
   target.irradiance = target.irradiance_scale * cosine * target.scale.cwiseInverse().asDiagonal();
   target.value.resize(count + kNormals, 3);
   target.value.topRows(count) = target.scale.asDiagonal() * radiance;
@@ -111,7 +116,8 @@ void widen_to_cells(const LightFitTarget& target, std::vector<LobeShape>& shapes
 }
 
 Rgb to_color(const Eigen::Array3d& color) {
-  return color.min(double(std::numeric_limits<float>::max())).cast<float>();
+  constexpr double kLargest = std::numeric_limits<float>::max();
+  return color.min(kLargest).max(-kLargest).cast<float>();
 }
 
 EnvironmentLobe to_light(const LobeShape& shape, const Eigen::Array3d& color) {
@@ -122,30 +128,6 @@ EnvironmentLobe to_light(const LobeShape& shape, const Eigen::Array3d& color) {
   light.lobe.bandwidth_y = static_cast<float>(std::exp(shape.log_bandwidth[1]));
   light.color = to_color(color);
   return light;
-}
-
-// Adds lobes one by one where the residual calls for one, improving all of them each time, then
-// polishes. `go_on` is asked at every step, with the number of lobes.
-std::vector<LobeShape> fit_shapes(const LightFitTarget& target, const BandwidthRange& range,
-                                  size_t count, const std::function<bool(size_t)>& go_on,
-                                  int& iterations) {
-  LightFitTarget start = target;
-  start.irradiance *= kStartIrradianceShare;
-  start.value.bottomRows(kNormals) *= kStartIrradianceShare;
-  std::vector<LobeShape> shapes;
-  const std::function<bool()> keep_going = [&] { return go_on(shapes.size()); };
-  const auto refine = [&](const LightFitTarget& goal, int steps, double tolerance) {
-    iterations += refine_lobes(goal, range, steps, tolerance, keep_going, shapes);
-    if (!keep_going()) throw Cancelled();
-  };
-  const LobeDictionary dictionary(start, range);
-  while (shapes.size() < count) {
-    shapes.push_back(dictionary.propose(mixture_residual(start, shapes)));
-    refine(start, kStepsPerLobe, kTolerance);
-  }
-  refine(target, kFinalSteps, kFinalTolerance);
-  widen_to_cells(target, shapes);
-  return shapes;
 }
 
 // The lights of given shapes. The irradiance of each shape is now exact: summed over cells, that of
@@ -168,21 +150,102 @@ std::vector<EnvironmentLobe> color_shapes(const LightFitTarget& target,
   return lights;
 }
 
-// The lobes of a map without compact sources, in its units.
-std::vector<EnvironmentLobe> fit_mixture(const Image& environment, const LightFitOptions& options,
-                                         size_t count, const std::function<bool(size_t)>& go_on,
-                                         int& iterations) {
+// Fits shapes to a target. `go_on` is asked at every step, with the number of lobes; a step that is
+// denied throws Cancelled.
+class ShapeFit {
+ public:
+  ShapeFit(const LightFitTarget& target, const LobeLimits& limits,
+           const std::function<bool(size_t)>& go_on)
+      : target_(target), start_(target), limits_(limits), go_on_(go_on) {
+    start_.irradiance *= kStartIrradianceShare;
+    start_.value.bottomRows(kNormals) *= kStartIrradianceShare;
+  }
+
+  // Adds lobes one by one where the residual calls for one, improving all of them each time, then
+  // polishes. Ends early when `good_enough(shapes)`, which is asked after each lobe and, when it
+  // says yes, once more after polishing.
+  std::vector<LobeShape> run(
+      size_t count, const std::function<bool(const std::vector<LobeShape>&)>& good_enough) {
+    const LobeDictionary dictionary(start_, limits_);
+    std::vector<LobeShape> shapes;
+    while (shapes.size() < count) {
+      shapes.push_back(dictionary.propose(mixture_residual(start_, shapes)));
+      refine(start_, kStepsPerLobe, kTolerance, shapes);
+      if (shapes.size() == count || !good_enough(shapes)) continue;
+      std::vector<LobeShape> polished = shapes;
+      polish(polished);
+      if (good_enough(polished)) return polished;
+    }
+    polish(shapes);
+    return shapes;
+  }
+
+  int iterations() const { return iterations_; }
+
+ private:
+  void polish(std::vector<LobeShape>& shapes) {
+    refine(target_, kFinalSteps, kFinalTolerance, shapes);
+    widen_to_cells(target_, shapes);
+  }
+
+  void refine(const LightFitTarget& goal, int steps, double tolerance,
+              std::vector<LobeShape>& shapes) {
+    const size_t count = shapes.size();
+    const std::function<bool()> keep_going = [&] { return go_on_(count); };
+    iterations_ += refine_lobes(goal, limits_, steps, tolerance, keep_going, shapes);
+    if (!keep_going()) throw Cancelled();
+  }
+
+  const LightFitTarget& target_;
+  LightFitTarget start_;
+  LobeLimits limits_;
+  const std::function<bool(size_t)>& go_on_;
+  int iterations_ = 0;
+};
+
+// The lobes of a map without compact sources, in its units. `good_enough` is asked of the lights.
+std::vector<EnvironmentLobe> fit_mixture(
+    const Image& environment, const LightFitOptions& options, size_t count,
+    const std::function<bool(const std::vector<EnvironmentLobe>&)>& good_enough,
+    const std::function<bool(size_t)>& go_on, int& iterations) {
   const std::vector<EnvironmentCell> cells =
       environment_cells(environment, kBaseRows, options.cells);
   const bool black = std::all_of(cells.begin(), cells.end(),
                                  [](const auto& cell) { return cell.radiance.sum() == 0; });
   if (black) return {};
-  const LightFitTarget target = make_target(environment, cells, options.irradiance_weight);
+  const LightFitTarget target = make_target(environment, cells, options);
   const double finest = *std::min_element(target.variance.begin(), target.variance.end());
-  const BandwidthRange range{
+  const LobeLimits limits{
       options.min_bandwidth,
-      std::clamp(narrowest_bandwidth(finest), options.min_bandwidth, options.max_bandwidth)};
-  return color_shapes(target, fit_shapes(target, range, count, go_on, iterations));
+      std::clamp(narrowest_bandwidth(finest), options.min_bandwidth, options.max_bandwidth),
+      options.isotropic};
+  ShapeFit fit(target, limits, go_on);
+  const auto shapes = fit.run(count, [&](const std::vector<LobeShape>& found) {
+    return options.target_error > 0 && good_enough(color_shapes(target, found));
+  });
+  iterations += fit.iterations();
+  return color_shapes(target, shapes);
+}
+
+// A compact source as a round lobe of the same energy: such a narrow lobe's integral is that of the
+// geometric mean of its bandwidths.
+void make_round(EnvironmentLobe& light) {
+  const float bandwidth = std::sqrt(light.lobe.bandwidth_x) * std::sqrt(light.lobe.bandwidth_y);
+  light.lobe.bandwidth_x = light.lobe.bandwidth_y = bandwidth;
+}
+
+// In the map's units, those of no colour left out, by falling power.
+LightRig make_rig(std::vector<EnvironmentLobe> lobes, float unit) {
+  for (EnvironmentLobe& light : lobes) light.color = to_color(light.color.cast<double>() * unit);
+  std::erase_if(lobes, [](const EnvironmentLobe& light) { return (light.color == 0).all(); });
+  const auto power = [](const EnvironmentLobe& light) {
+    return std::abs(luminance(light.color)) * integral(light.lobe);
+  };
+  std::stable_sort(lobes.begin(), lobes.end(),
+                   [&](const auto& a, const auto& b) { return power(a) > power(b); });
+  LightRig rig;
+  rig.lobes = std::move(lobes);
+  return rig;
 }
 
 }  // namespace
@@ -191,37 +254,41 @@ LightFit fit_light(const Image& environment, const LightFitOptions& options,
                    const Progress& progress) {
   check(environment, options);
   LightFit fit;
+  const ReducedEnvironment map = reduce_environment(environment);
   float peak = 0;
-  for (const Rgb& pixel : environment.pixels) peak = std::max(peak, pixel.maxCoeff());
+  for (const Rgb& pixel : map.image.pixels) peak = std::max(peak, pixel.maxCoeff());
   if (peak == 0) return fit;
 
   // In units of the peak, so that squares neither overflow nor vanish.
-  Image remainder = environment;
+  Image remainder = map.image;
   for (Rgb& pixel : remainder.pixels) pixel /= peak;
-  std::vector<EnvironmentLobe>& lobes = fit.rig.lobes;
+  std::vector<EnvironmentLobe> lobes;
   const size_t wanted = options.lobes;
   while (lobes.size() < wanted / 2) {
-    const auto source = take_compact_source(remainder, options.max_bandwidth);
+    auto source = take_compact_source(remainder, options.max_bandwidth);
     if (!source) break;
+    if (options.isotropic) make_round(*source);
     lobes.push_back(*source);
   }
   const size_t taken = lobes.size();
-  const auto go_on = [&](size_t placed) {
+  const std::function<bool(size_t)> go_on = [&](size_t placed) {
     return !progress || progress("fit lights", taken + placed, wanted);
   };
   if (!go_on(0)) throw Cancelled();
-  if (taken < wanted) {
-    const auto mixture = fit_mixture(remainder, options, wanted - taken, go_on, fit.iterations);
-    lobes.insert(lobes.end(), mixture.begin(), mixture.end());
-  }
-  for (EnvironmentLobe& light : lobes) light.color = to_color(light.color.cast<double>() * peak);
-  std::erase_if(lobes, [](const EnvironmentLobe& light) { return (light.color <= 0).all(); });
-  const auto power = [](const EnvironmentLobe& light) {
-    return luminance(light.color) * integral(light.lobe);
+  const auto rig_with = [&](const std::vector<EnvironmentLobe>& mixture) {
+    std::vector<EnvironmentLobe> all = lobes;
+    all.insert(all.end(), mixture.begin(), mixture.end());
+    return make_rig(std::move(all), peak);
   };
-  std::stable_sort(lobes.begin(), lobes.end(),
-                   [&](const auto& a, const auto& b) { return power(a) > power(b); });
-  fit.error = measure_light_fit(environment, fit.rig);
+  const auto good_enough = [&](const std::vector<EnvironmentLobe>& mixture) {
+    return radiance_error(map, rig_with(mixture)) <= options.target_error;
+  };
+  std::vector<EnvironmentLobe> mixture;
+  if (taken < wanted)
+    mixture = fit_mixture(remainder, options, wanted - taken, good_enough, go_on, fit.iterations);
+  fit.rig = rig_with(mixture);
+  fit.error = measure_light_fit(map, fit.rig);
+  fit.met_target = options.target_error == 0 || fit.error.relative_l2 <= options.target_error;
   return fit;
 }
 

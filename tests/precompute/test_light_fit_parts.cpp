@@ -176,7 +176,7 @@ TEST(SampleLobe, DerivativesMatchDifferences) {
     SampleDerivative derivative(target.rows(), 6);
     Eigen::VectorXd value(target.rows());
     sample_lobe(target, shape.rotation.coeffs().data(), shape.log_bandwidth.data(), value,
-                &derivative);
+                derivative.data());
     Eigen::Matrix<double, 4, 3, Eigen::RowMajor> plus;
     ceres::EigenQuaternionManifold().PlusJacobian(shape.rotation.coeffs().data(), plus.data());
     Eigen::MatrixXd tangent(target.rows(), 5);
@@ -222,7 +222,7 @@ TEST(LobeMixtureCost, GradientMatchesDifferences) {
   std::vector<LobeShape> shapes;
   for (int i = 0; i < kLobes; ++i) shapes.push_back(random_shape(random));
   const LobeMixtureCost cost(target, kLobes);
-  const auto rows = static_cast<Eigen::Index>(3 * target.rows());
+  const Eigen::Index rows = cost.num_residuals();
   const auto evaluate = [&](std::vector<LobeShape>& at, Eigen::VectorXd& residual,
                             double** jacobians) {
     std::vector<double*> parameters;

@@ -28,28 +28,6 @@ void for_each_part(const Image& environment, const EnvironmentCell& cell, Visit&
   }
 }
 
-EnvironmentCell make_cell(const Image& environment, double column0, double column1, double row0,
-                          double row1) {
-  EnvironmentCell cell{column0, column1, row0, row1, 0, Eigen::Array3d::Zero(), 0};
-  double row_begin = -1, sine_step = 0, square = 0;
-  const double column_angle = 2 * kPi<double> / environment.width;
-  for_each_part(
-      environment, cell, [&](const Rgb& pixel, double c0, double c1, double r0, double r1) {
-        if (r0 != row_begin) {
-          row_begin = r0;
-          sine_step = std::sin(latitude(environment, r0)) - std::sin(latitude(environment, r1));
-        }
-        const double weight = (c1 - c0) * column_angle * sine_step;
-        const Eigen::Array3d value = pixel.cast<double>();
-        cell.solid_angle += weight;
-        cell.radiance += weight * value;
-        square += weight * value.square().sum();
-      });
-  cell.radiance /= cell.solid_angle;
-  cell.spread = std::max(square - cell.solid_angle * cell.radiance.square().sum(), 0.0);
-  return cell;
-}
-
 // The pixel boundary nearest to the middle of [begin, end], or -1 if none lies inside.
 double split_position(double begin, double end) {
   const double middle = std::round((begin + end) / 2);
@@ -79,6 +57,28 @@ bool split_cell(const Image& environment, const EnvironmentCell& cell, Environme
 }
 
 }  // namespace
+
+EnvironmentCell make_cell(const Image& environment, double column0, double column1, double row0,
+                          double row1) {
+  EnvironmentCell cell{column0, column1, row0, row1, 0, Eigen::Array3d::Zero(), 0};
+  double row_begin = -1, sine_step = 0, square = 0;
+  const double column_angle = 2 * kPi<double> / environment.width;
+  for_each_part(
+      environment, cell, [&](const Rgb& pixel, double c0, double c1, double r0, double r1) {
+        if (r0 != row_begin) {
+          row_begin = r0;
+          sine_step = std::sin(latitude(environment, r0)) - std::sin(latitude(environment, r1));
+        }
+        const double weight = (c1 - c0) * column_angle * sine_step;
+        const Eigen::Array3d value = pixel.cast<double>();
+        cell.solid_angle += weight;
+        cell.radiance += weight * value;
+        square += weight * value.square().sum();
+      });
+  cell.radiance /= cell.solid_angle;
+  cell.spread = std::max(square - cell.solid_angle * cell.radiance.square().sum(), 0.0);
+  return cell;
+}
 
 Vector3d cell_direction(const Image& environment, const EnvironmentCell& cell) {
   const double sine =

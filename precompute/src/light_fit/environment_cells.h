@@ -16,6 +16,10 @@ struct EnvironmentCell {
   double spread;                        ///< integral of |radiance - mean|^2 over the cell
 };
 
+/// The cell between these columns and rows of an environment, in pixels.
+EnvironmentCell make_cell(const Image& environment, double column0, double column1, double row0,
+                          double row1);
+
 /// The direction in the middle (by area) of a cell.
 Vector3d cell_direction(const Image& environment, const EnvironmentCell& cell);
 

@@ -1,3 +1,5 @@
+#include "light_fit/light_fit_error.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -55,12 +57,17 @@ Squares row_squares(const Image& environment, const LightRig& rig, int row) {
 
 }  // namespace
 
-LightFitError measure_light_fit(const Image& environment, const LightRig& rig) {
-  std::vector<Squares> rows(environment.height);
-  tbb::parallel_for(0, environment.height,
-                    [&](int row) { rows[row] = row_squares(environment, rig, row); });
+double radiance_error(const ReducedEnvironment& map, const LightRig& rig) {
+  std::vector<Squares> rows(map.image.height);
+  tbb::parallel_for(0, map.image.height,
+                    [&](int row) { rows[row] = row_squares(map.image, rig, row); });
+  // What varies within a pixel of the reduced map is error whole: a lobe hardly varies there.
+  rows.push_back({map.spread, map.spread});
+  return relative(rows);
+}
 
-  const FluxVectors of_map = environment_flux(environment);
+LightFitError measure_light_fit(const ReducedEnvironment& map, const LightRig& rig) {
+  const FluxVectors of_map = environment_flux(map.image);
   FluxVectors of_rig;
   for (const EnvironmentLobe& light : rig.lobes) append_lobe_flux(light, of_rig);
   std::vector<Squares> normals(size_t(kNormals) * kNormals);
@@ -70,7 +77,11 @@ LightFitError measure_light_fit(const Image& environment, const LightRig& rig) {
     const Eigen::RowVector3d truth = irradiance_of_flux(of_map, normal);
     normals[i] = {(truth - irradiance_of_flux(of_rig, normal)).squaredNorm(), truth.squaredNorm()};
   });
-  return {relative(rows), relative(normals)};
+  return {radiance_error(map, rig), relative(normals)};
+}
+
+LightFitError measure_light_fit(const Image& environment, const LightRig& rig) {
+  return measure_light_fit(reduce_environment(environment), rig);
 }
 
 }  // namespace burnish

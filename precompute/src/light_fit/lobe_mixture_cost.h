@@ -27,6 +27,7 @@ struct LightFitTarget {
   Eigen::MatrixXd irradiance;   ///< [normals x cells]: from scaled radiance to scaled irradiance
   double irradiance_scale = 1;  ///< of an irradiance
   Eigen::Matrix<double, Eigen::Dynamic, 3> value;  ///< [cells + normals], a column a channel
+  bool signed_colors = false;                      ///< colours may be negative
 
   Eigen::Index rows() const { return value.rows(); }
   Eigen::Index cells() const { return scale.size(); }
@@ -36,20 +37,22 @@ struct LightFitTarget {
 using SampleDerivative = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
 /// A unit lobe as seen by the target: its mean over each cell, taken as that of the lobe widened by
-/// the cell's variance, scaled, followed by its irradiance. `derivative` may be null; else it has
-/// as many rows as the target.
+/// the cell's variance, scaled, followed by its irradiance. `derivative` is the data of a
+/// SampleDerivative with as many rows as the target, or null.
 void sample_lobe(const LightFitTarget& target, const double* rotation, const double* log_bandwidth,
-                 Eigen::Ref<Eigen::VectorXd> value, SampleDerivative* derivative);
+                 Eigen::Ref<Eigen::VectorXd> value, double* derivative);
 
-/// The best colours of given shapes, each channel >= 0.
+/// The best colours of given shapes, each channel >= 0 unless the target says otherwise.
 struct LobeColors {
   Eigen::Matrix<double, Eigen::Dynamic, 3> color;  ///< a row a lobe
   std::vector<int> passive[3];                     ///< lobes in use, a list a channel
 };
 LobeColors solve_colors(const LightFitTarget& target, const Eigen::MatrixXd& lobes);
 
-/// The residual that is left by given shapes with their best colours: variable projection.
-/// Parameter blocks: for each lobe a quaternion (x, y, z, w), then two log bandwidths.
+/// The error that is left by given shapes with their best colours: variable projection. Parameter
+/// blocks: for each lobe a quaternion (x, y, z, w), then two log bandwidths. The residuals are not
+/// those of the cells, but 6 * lobes + 1 numbers with the same squared norm, the same gradient and
+/// the same J^T J, which is all that a solver asks of them.
 class LobeMixtureCost : public ceres::CostFunction {
  public:
   /// Keeps a reference to the target.

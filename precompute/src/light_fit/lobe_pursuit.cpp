@@ -34,8 +34,9 @@ LobeShape round_lobe(const Vector3d& axis, double bandwidth) {
 // The cells where the residual's density is highest.
 std::vector<int> strongest_cells(const LightFitTarget& target, const LightFitResidual& residual) {
   const Eigen::Index cells = target.cells();
-  const Eigen::VectorXd density =
-      residual.topRows(cells).cwiseMax(0.0).rowwise().sum().cwiseQuotient(target.scale);
+  LightFitResidual missing = residual.topRows(cells);
+  missing = target.signed_colors ? missing.cwiseAbs().eval() : missing.cwiseMax(0.0).eval();
+  const Eigen::VectorXd density = missing.rowwise().sum().cwiseQuotient(target.scale);
   std::vector<int> order(cells);
   std::iota(order.begin(), order.end(), 0);
   const auto count = std::min<std::ptrdiff_t>(kNarrowDirections, cells);
@@ -46,9 +47,11 @@ std::vector<int> strongest_cells(const LightFitTarget& target, const LightFitRes
   return order;
 }
 
-// By how much the best colour >= 0 of each lobe lowers the squared residual.
-Eigen::VectorXd gains(const Eigen::MatrixXd& samples, const LightFitResidual& residual) {
-  const Eigen::MatrixXd along = (samples.transpose() * residual).cwiseMax(0.0);
+// By how much the best colour of each lobe lowers the squared residual.
+Eigen::VectorXd gains(const LightFitTarget& target, const Eigen::MatrixXd& samples,
+                      const LightFitResidual& residual) {
+  Eigen::MatrixXd along = samples.transpose() * residual;
+  if (!target.signed_colors) along = along.cwiseMax(0.0);
   const Eigen::VectorXd square = samples.colwise().squaredNorm().transpose();
   return (square.array() > 0).select(along.rowwise().squaredNorm().array() / square.array(), 0.0);
 }
@@ -65,6 +68,30 @@ class AskToGoOn : public ceres::IterationCallback {
   const std::function<bool()>& keep_going_;
 };
 
+// Keeps two equal logarithms of bandwidths equal.
+class EqualBandwidths : public ceres::Manifold {
+ public:
+  int AmbientSize() const override { return 2; }
+  int TangentSize() const override { return 1; }
+  bool Plus(const double* x, const double* delta, double* result) const override {
+    result[0] = result[1] = x[0] + delta[0];
+    return true;
+  }
+  bool PlusJacobian(const double*, double* jacobian) const override {
+    jacobian[0] = jacobian[1] = 1;
+    return true;
+  }
+  bool Minus(const double* y, const double* x, double* delta) const override {
+    delta[0] = y[0] - x[0];
+    return true;
+  }
+  bool MinusJacobian(const double*, double* jacobian) const override {
+    jacobian[0] = 1;
+    jacobian[1] = 0;
+    return true;
+  }
+};
+
 }  // namespace
 
 Vector3d fibonacci_direction(int i, int count) {
@@ -74,12 +101,13 @@ Vector3d fibonacci_direction(int i, int count) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-LobeDictionary::LobeDictionary(const LightFitTarget& target, const BandwidthRange& range)
-    : target_(target), range_(range) {
+LobeDictionary::LobeDictionary(const LightFitTarget& target, const LobeLimits& limits)
+    : target_(target), limits_(limits) {
   for (const double bandwidth : kWideBandwidths)
     for (int i = 0; i < kWideDirections; ++i)
-      wide_.push_back(round_lobe(fibonacci_direction(i, kWideDirections),
-                                 std::clamp(bandwidth, range.min, range.max)));
+      wide_.push_back(
+          round_lobe(fibonacci_direction(i, kWideDirections),
+                     std::clamp(bandwidth, limits.min_bandwidth, limits.max_bandwidth)));
   wide_samples_ = sample_lobes(target, wide_);
 }
 
@@ -87,12 +115,13 @@ LobeShape LobeDictionary::propose(const LightFitResidual& residual) const {
   std::vector<LobeShape> narrow;
   for (const int cell : strongest_cells(target_, residual))
     for (const double bandwidth : kNarrowBandwidths)
-      if (bandwidth >= range_.min && bandwidth <= range_.max)
+      if (bandwidth >= limits_.min_bandwidth && bandwidth <= limits_.max_bandwidth)
         narrow.push_back(round_lobe(target_.direction[cell], bandwidth));
   Eigen::Index best_wide = 0, best_narrow = 0;
-  const double gain_wide = gains(wide_samples_, residual).maxCoeff(&best_wide);
+  const double gain_wide = gains(target_, wide_samples_, residual).maxCoeff(&best_wide);
   if (narrow.empty()) return wide_[best_wide];
-  const double gain_narrow = gains(sample_lobes(target_, narrow), residual).maxCoeff(&best_narrow);
+  const double gain_narrow =
+      gains(target_, sample_lobes(target_, narrow), residual).maxCoeff(&best_narrow);
   return gain_narrow > gain_wide ? narrow[best_narrow] : wide_[best_wide];
 }
 
@@ -111,11 +140,12 @@ LightFitResidual mixture_residual(const LightFitTarget& target,
   return target.value - samples * solve_colors(target, samples).color;
 }
 
-int refine_lobes(const LightFitTarget& target, const BandwidthRange& range, int max_steps,
+int refine_lobes(const LightFitTarget& target, const LobeLimits& limits, int max_steps,
                  double tolerance, const std::function<bool()>& keep_going,
                  std::vector<LobeShape>& shapes) {
   LobeMixtureCost cost(target, static_cast<int>(shapes.size()));
   ceres::EigenQuaternionManifold manifold;
+  EqualBandwidths equal;
   ceres::Problem::Options problem_options;
   problem_options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
   problem_options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -128,11 +158,12 @@ int refine_lobes(const LightFitTarget& target, const BandwidthRange& range, int 
   problem.AddResidualBlock(&cost, nullptr, blocks);
   for (LobeShape& shape : shapes) {
     problem.SetManifold(shape.rotation.coeffs().data(), &manifold);
+    if (limits.isotropic) problem.SetManifold(shape.log_bandwidth.data(), &equal);
     for (int i = 0; i < 2; ++i) {
-      shape.log_bandwidth[i] =
-          std::clamp(shape.log_bandwidth[i], std::log(range.min), std::log(range.max));
-      problem.SetParameterLowerBound(shape.log_bandwidth.data(), i, std::log(range.min));
-      problem.SetParameterUpperBound(shape.log_bandwidth.data(), i, std::log(range.max));
+      shape.log_bandwidth[i] = std::clamp(shape.log_bandwidth[i], std::log(limits.min_bandwidth),
+                                          std::log(limits.max_bandwidth));
+      problem.SetParameterLowerBound(shape.log_bandwidth.data(), i, std::log(limits.min_bandwidth));
+      problem.SetParameterUpperBound(shape.log_bandwidth.data(), i, std::log(limits.max_bandwidth));
     }
   }
   AskToGoOn ask(keep_going);

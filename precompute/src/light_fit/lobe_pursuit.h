@@ -10,9 +10,10 @@ namespace burnish {
 /// What is left of the target: a row a cell or normal, a column a channel.
 using LightFitResidual = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-/// Range of the lobes' bandwidths.
-struct BandwidthRange {
-  double min, max;
+/// What shapes the lobes may have.
+struct LobeLimits {
+  double min_bandwidth, max_bandwidth;
+  bool isotropic = false;  ///< equal bandwidths
 };
 
 /// Direction `i` of `count` that are spread evenly over the sphere.
@@ -23,13 +24,13 @@ Vector3d fibonacci_direction(int i, int count);
 class LobeDictionary {
  public:
   /// Keeps a reference to the target.
-  LobeDictionary(const LightFitTarget& target, const BandwidthRange& range);
+  LobeDictionary(const LightFitTarget& target, const LobeLimits& limits);
   /// The single lobe that lowers the squared residual most.
   LobeShape propose(const LightFitResidual& residual) const;
 
  private:
   const LightFitTarget& target_;
-  BandwidthRange range_;
+  LobeLimits limits_;
   std::vector<LobeShape> wide_;
   Eigen::MatrixXd wide_samples_;
 };
@@ -43,7 +44,7 @@ LightFitResidual mixture_residual(const LightFitTarget& target,
 
 /// Improves all shapes together by Levenberg-Marquardt. Returns the number of steps. `keep_going`
 /// is asked after each.
-int refine_lobes(const LightFitTarget& target, const BandwidthRange& range, int max_steps,
+int refine_lobes(const LightFitTarget& target, const LobeLimits& limits, int max_steps,
                  double tolerance, const std::function<bool()>& keep_going,
                  std::vector<LobeShape>& shapes);
 

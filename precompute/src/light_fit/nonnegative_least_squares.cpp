@@ -15,15 +15,21 @@ Eigen::VectorXd solve_passive(const Eigen::MatrixXd& gram, const Eigen::VectorXd
   return sub.llt().solve(rhs(passive));
 }
 
-// Whether column `next` is independent of those in use: the part of it that they leave over.
-bool independent(const Eigen::MatrixXd& gram, const std::vector<int>& passive, int next) {
+// Whether column `next` is independent of those in use: the share of it that they leave over.
+bool independent(const Eigen::MatrixXd& gram, const std::vector<int>& passive, int next,
+                 double least_share) {
   if (!(gram(next, next) > 0)) return false;
   if (passive.empty()) return true;
   const Eigen::VectorXd cross = gram(passive, std::vector<int>{next});
   const Eigen::MatrixXd sub = gram(passive, passive);
   const double rest = gram(next, next) - cross.dot(sub.llt().solve(cross));
-  return rest > 1e-10 * gram(next, next);  // where the Cholesky factor of a Gram matrix still holds
+  return rest > least_share * gram(next, next);
 }
+
+// Where the Cholesky factor of a Gram matrix still holds.
+constexpr double kLeastShare = 1e-10;
+// Without bounds, lobes much alike would take huge colours of opposite sign: up to 1 / sqrt(this).
+constexpr double kLeastSignedShare = 1e-6;
 
 }  // namespace
 
@@ -49,7 +55,7 @@ Eigen::VectorXd solve_nonnegative(const Eigen::MatrixXd& gram, const Eigen::Vect
       }
     }
     if (next < 0) break;
-    if (!independent(gram, passive, next)) {
+    if (!independent(gram, passive, next, kLeastShare)) {
       barred[next] = 1;
       continue;
     }
@@ -76,6 +82,16 @@ Eigen::VectorXd solve_nonnegative(const Eigen::MatrixXd& gram, const Eigen::Vect
       if (passive.empty()) break;
     }
   }
+  return x;
+}
+
+Eigen::VectorXd solve_signed(const Eigen::MatrixXd& gram, const Eigen::VectorXd& rhs,
+                             std::vector<int>& passive) {
+  passive.clear();
+  for (int i = 0; i < rhs.size(); ++i)
+    if (independent(gram, passive, i, kLeastSignedShare)) passive.push_back(i);
+  Eigen::VectorXd x = Eigen::VectorXd::Zero(rhs.size());
+  if (!passive.empty()) x(passive) = solve_passive(gram, rhs, passive);
   return x;
 }
 

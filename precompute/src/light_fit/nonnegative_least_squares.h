@@ -11,4 +11,8 @@ namespace burnish {
 Eigen::VectorXd solve_nonnegative(const Eigen::MatrixXd& gram, const Eigen::VectorXd& rhs,
                                   std::vector<int>& passive);
 
+/// The same without the bounds. Of columns that nearly depend on each other the first are used.
+Eigen::VectorXd solve_signed(const Eigen::MatrixXd& gram, const Eigen::VectorXd& rhs,
+                             std::vector<int>& passive);
+
 }  // namespace burnish
