@@ -27,6 +27,7 @@ constexpr int kBaseRows = 24;  // of cells, before they are split where the map 
 constexpr int kNormals = 64;  // of the irradiance: it has few degrees of freedom (order 4 suffices)
 // More steps between two new lobes cost time and find no better fit on the maps of docs/lights.md.
 constexpr int kStepsPerLobe = 8, kFinalSteps = 60;
+constexpr size_t kExtraLobes = 3;  // of the second way to a mixture; six took longer for no less
 constexpr double kTolerance = 1e-4, kFinalTolerance = 1e-6;
 // While lobes are added, irradiance counts less: it would draw them to broad compromises.
 constexpr double kStartIrradianceShare = 0.5;
@@ -150,6 +151,23 @@ std::vector<EnvironmentLobe> color_shapes(const LightFitTarget& target,
   return lights;
 }
 
+// The index of the shape without which the others, with their best colours, fit best.
+std::ptrdiff_t least_missed(const LightFitTarget& target, const std::vector<LobeShape>& shapes) {
+  const Eigen::MatrixXd samples = sample_lobes(target, shapes);
+  std::ptrdiff_t least = 0;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < samples.cols(); ++k) {
+    Eigen::MatrixXd rest(samples.rows(), samples.cols() - 1);
+    rest << samples.leftCols(k), samples.rightCols(samples.cols() - 1 - k);
+    const double error = (target.value - rest * solve_colors(target, rest).color).squaredNorm();
+    if (error < lowest) {
+      lowest = error;
+      least = k;
+    }
+  }
+  return least;
+}
+
 // Fits shapes to a target. `go_on` is asked at every step, with the number of lobes; a step that is
 // denied throws Cancelled.
 class ShapeFit {
@@ -162,8 +180,9 @@ class ShapeFit {
   }
 
   // Adds lobes one by one where the residual calls for one, improving all of them each time, then
-  // polishes. Ends early when `good_enough(shapes)`, which is asked after each lobe and, when it
-  // says yes, once more after polishing.
+  // polishes, and takes the better of this and of what grow_and_prune() makes of it. Ends early
+  // when `good_enough(shapes)`, which is asked after each lobe and, when it says yes, once more
+  // after polishing.
   std::vector<LobeShape> run(
       size_t count, const std::function<bool(const std::vector<LobeShape>&)>& good_enough) {
     const LobeDictionary dictionary(start_, limits_);
@@ -176,8 +195,10 @@ class ShapeFit {
       polish(polished);
       if (good_enough(polished)) return polished;
     }
+    std::vector<LobeShape> pruned = shapes;
     polish(shapes);
-    return shapes;
+    grow_and_prune(dictionary, pruned);
+    return squared_error(pruned) < squared_error(shapes) ? pruned : shapes;
   }
 
   int iterations() const { return iterations_; }
@@ -186,6 +207,25 @@ class ShapeFit {
   void polish(std::vector<LobeShape>& shapes) {
     refine(target_, kFinalSteps, kFinalTolerance, shapes);
     widen_to_cells(target_, shapes);
+  }
+
+  // Another way to as many lobes: a few more are added, then those that are missed least go. It
+  // leads to another local minimum.
+  void grow_and_prune(const LobeDictionary& dictionary, std::vector<LobeShape>& shapes) {
+    const size_t count = shapes.size();
+    while (shapes.size() < count + kExtraLobes) {
+      shapes.push_back(dictionary.propose(mixture_residual(start_, shapes)));
+      refine(start_, kStepsPerLobe, kTolerance, shapes);
+    }
+    while (shapes.size() > count) {
+      shapes.erase(shapes.begin() + least_missed(target_, shapes));
+      refine(target_, kStepsPerLobe, kTolerance, shapes);
+    }
+    polish(shapes);
+  }
+
+  double squared_error(const std::vector<LobeShape>& shapes) const {
+    return mixture_residual(target_, shapes).squaredNorm();
   }
 
   void refine(const LightFitTarget& goal, int steps, double tolerance,
@@ -272,7 +312,7 @@ LightFit fit_light(const Image& environment, const LightFitOptions& options,
   }
   const size_t taken = lobes.size();
   const std::function<bool(size_t)> go_on = [&](size_t placed) {
-    return !progress || progress("fit lights", taken + placed, wanted);
+    return !progress || progress("fit lights", std::min(taken + placed, wanted), wanted);
   };
   if (!go_on(0)) throw Cancelled();
   const auto rig_with = [&](const std::vector<EnvironmentLobe>& mixture) {

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "burnish/formats/image_file.h"
 #include "burnish/formats/light_file.h"
 #include "burnish/light/environment_map.h"
 #include "commands.h"
@@ -13,6 +14,7 @@
 #include "common/machine.h"
 #include "common/options.h"
 #include "common/work.h"
+#include "harness/light_picture.h"
 #include "look_options.h"
 
 namespace burnish::tools {
@@ -21,12 +23,30 @@ namespace {
 struct Options {
   std::string environment;
   std::string output;
+  std::string preview;
+  float exposure_stops = 0;  ///< beyond the preview's own
   LightFitOptions fit;
   CommonOptions common;
 };
 
+void write_preview(const Options& options, const Image& environment, const LightRig& rig) {
+  if (options.preview.empty()) return;
+  const float stops = picture_exposure_stops(environment) + options.exposure_stops;
+  write_png(draw_light_fit(environment, rig, stops), options.preview);
+}
+
+std::string summary(const LightFit& fit, const LightFitOptions& options, double seconds) {
+  std::string text =
+      fmt::format("{} lobes in {:.1f} s; relative L2 error: radiance {:.1f} %, irradiance {:.1f} %",
+                  fit.rig.lobes.size(), seconds, 100 * fit.error.relative_l2,
+                  100 * fit.error.irradiance_relative_l2);
+  if (!fit.met_target)
+    text += fmt::format("; the target of {:g} % is not met", 100 * options.target_error);
+  return text;
+}
+
 void run(const Options& options) {
-  require_writable(std::vector{options.output, options.common.report});
+  require_writable(std::vector{options.output, options.preview, options.common.report});
   Work work(options.common);
   const Image environment = load_environment(options.environment, work);
   const Stopwatch watch;
@@ -40,18 +60,17 @@ void run(const Options& options) {
   file.fit_irradiance_relative_l2 = fit.error.irradiance_relative_l2;
   file.rig = fit.rig;
   write_lights(file, options.output);
+  write_preview(options, environment, fit.rig);
   write_json(options.common.report, {{"environment", options.environment},
                                      {"output", options.output},
                                      {"lobes", fit.rig.lobes.size()},
                                      {"relative_l2", fit.error.relative_l2},
                                      {"irradiance_relative_l2", fit.error.irradiance_relative_l2},
+                                     {"met_target", fit.met_target},
                                      {"iterations", fit.iterations},
                                      {"seconds", seconds},
                                      {"machine", machine_record(work.threads())}});
-  work.print(
-      fmt::format("{} lobes in {:.1f} s; relative L2 error: radiance {:.1f} %, irradiance {:.1f} %",
-                  fit.rig.lobes.size(), seconds, 100 * fit.error.relative_l2,
-                  100 * fit.error.irradiance_relative_l2));
+  work.print(summary(fit, options.fit, seconds));
 }
 
 }  // namespace
@@ -64,7 +83,22 @@ std::function<void()> declare_fit_light(CLI::App& app) {
   add_file(app, "-o,--output", "FILE.json", options->output, "light file to write (required)",
            ".json")
       ->required();
-  add_number(app, "--lobes", "N", options->fit.lobes, {1, 128}, "lights to fit, at most");
+  LightFitOptions& fit = options->fit;
+  add_number(app, "--lobes", "N", fit.lobes, {1, 128}, "lights to fit, at most");
+  add_number(
+      app, "--target-error", "E", fit.target_error, {0.0, 1.0},
+      "relative L2 error of the radiance: lights are added until it is met (0: all of them)");
+  app.add_flag("--isotropic", fit.isotropic,
+               "round lobes only, as spherical Gaussians, to compare with");
+  app.add_flag("--signed", fit.signed_colors, "lights may be negative");
+  add_number(app, "--cells", "N", fit.cells, {256, 16384}, "areas the map is averaged over");
+  add_number(app, "--irradiance-weight", "W", fit.irradiance_weight, {0.0, 1e6},
+             "of the irradiance's error against that of the radiance");
+  add_file(app, "--preview", "FILE.png", options->preview,
+           "writes the map, the lights with an ellipse each, and their difference side by side",
+           ".png");
+  add_number(app, "--exposure", "EV", options->exposure_stops, {-40, 40, "stops"},
+             "brightens the preview, beyond the map's typical radiance at middle grey");
   add_common_options(app, options->common);
   return [options] { run(*options); };
 }
