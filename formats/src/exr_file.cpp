@@ -317,6 +317,7 @@ DecodedImage decode(std::string_view bytes, const std::string& path) {
   DecodedImage decoded;
   decoded.report = describe_part(file, part_index);
   decoded.is_cube_environment = is_environment && Imf::envmap(header) == Imf::ENVMAP_CUBE;
+  decoded.is_latlong_environment = is_environment && Imf::envmap(header) == Imf::ENVMAP_LATLONG;
   Imf::InputPart part(file, part_index);
   decoded.image = read_part(part, color_channels(header));
   if (picture_window != data_window) {

@@ -75,6 +75,19 @@ DecodedImage decode_image(const std::string& path) {
   return decoded;
 }
 
+/// What a picture of this shape is laid out as, if not as longitude and latitude; "" if it may be.
+const char* foreign_layout(int width, int height) {
+  constexpr int kLeastEdge = 16;  // of a picture that has a layout to speak of
+  if (std::min(width, height) < kLeastEdge) return "";
+  if (width == height) return "an angular map, a mirror ball or an octahedral map";
+  const auto is_ratio = [&](std::int64_t across, std::int64_t down) {
+    return width * down == height * across;
+  };
+  if (is_ratio(4, 3) || is_ratio(3, 4)) return "a cube map unfolded to a cross";
+  if (is_ratio(6, 1) || is_ratio(1, 6)) return "the six faces of a cube map in a strip";
+  return "";
+}
+
 }  // namespace
 
 void check_image_size(std::int64_t width, std::int64_t height, std::uint64_t file_bytes,
@@ -117,6 +130,12 @@ Image read_environment(const std::string& path, EnvironmentReport* report) {
   if (decoded.is_cube_environment)
     throw Error(ErrorKind::unsupported, path,
                 "is a cube map (envmap attribute), expected a lat-long environment");
+  const char* layout = foreign_layout(decoded.image.width, decoded.image.height);
+  if (*layout && !decoded.is_latlong_environment)
+    throw Error(ErrorKind::unsupported, path,
+                fmt::format("{} x {} pixels, as {} has; expected a lat-long environment, twice as "
+                            "wide as high (an OpenEXR file that is one says so: envmap = latlong)",
+                            decoded.image.width, decoded.image.height, layout));
   EnvironmentReport result;
   result.image = std::move(decoded.report);
   if (decoded.image.width != 2 * decoded.image.height)

@@ -13,7 +13,8 @@ namespace burnish {
 struct DecodedImage {
   Image image;
   ImageReport report;
-  bool is_cube_environment = false;
+  bool is_cube_environment = false;     ///< the envmap attribute says so
+  bool is_latlong_environment = false;  ///< likewise
 };
 
 DecodedImage decode_exr(std::string_view bytes, const std::string& path);

@@ -7,9 +7,13 @@
 
 #include <Imath/half.h>
 #include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfDeepFrameBuffer.h>
+#include <OpenEXR/ImfDeepScanLineOutputFile.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfMultiPartOutputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfPartType.h>
 #include <OpenEXR/ImfTileDescription.h>
 #include <OpenEXR/ImfTiledOutputFile.h>
@@ -102,6 +106,51 @@ inline void write_exr_variant(const Image& image, const ExrVariant& variant,
   Imf::OutputFile file(path.c_str(), header, 0);
   file.setFrameBuffer(buffer);
   file.writePixels(image.height);
+}
+
+/// A deep picture of 4 x 2 pixels without samples.
+inline void write_deep_exr(const std::string& path) {
+  Imf::Header header(4, 2);
+  header.channels().insert("R", Imf::Channel(Imf::HALF));
+  header.compression() = Imf::ZIPS_COMPRESSION;
+  header.setType(Imf::DEEPSCANLINE);
+  Imf::DeepScanLineOutputFile file(path.c_str(), header, 0);
+  unsigned counts[8] = {};
+  half* samples[8] = {};
+  Imf::DeepFrameBuffer buffer;
+  buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts),
+                                           sizeof(unsigned), 4 * sizeof(unsigned)));
+  buffer.insert("R", Imf::DeepSlice(Imf::HALF, reinterpret_cast<char*>(samples), sizeof(half*),
+                                    4 * sizeof(half*), sizeof(half)));
+  file.setFrameBuffer(buffer);
+  file.writePixels(2);
+}
+
+/// Three parts: "depth" with a channel Z, "beauty" with the picture, "other" in black.
+inline void write_exr_parts(const Image& picture, const std::string& path) {
+  const ExrVariant depth{.channels = {"Z"}}, color{};
+  Imf::Header headers[] = {exr_header(picture, depth), exr_header(picture, color),
+                           exr_header(picture, color)};
+  const char* names[] = {"depth", "beauty", "other"};
+  for (size_t i = 0; i < 3; ++i) {
+    headers[i].setName(names[i]);
+    headers[i].setType(Imf::SCANLINEIMAGE);
+  }
+  Imf::MultiPartOutputFile file(path.c_str(), headers, 3, false, 0);
+  for (int i = 0; i < 3; ++i) {
+    std::vector<ExrSamples> samples;
+    samples.reserve(3);
+    Imf::FrameBuffer buffer;
+    const std::vector<std::string>& channels = i == 0 ? depth.channels : color.channels;
+    for (const std::string& name : channels) {
+      samples.emplace_back(Imf::HALF, i == 1 ? picture : Image(picture.width, picture.height),
+                           name);
+      buffer.insert(name, samples.back().slice(headers[i].dataWindow()));
+    }
+    Imf::OutputPart part(file, i);
+    part.setFrameBuffer(buffer);
+    part.writePixels(picture.height);
+  }
 }
 
 }  // namespace burnish::test

@@ -3,10 +3,6 @@
 #include <limits>
 #include <random>
 
-#include <OpenEXR/ImfDeepFrameBuffer.h>
-#include <OpenEXR/ImfDeepScanLineOutputFile.h>
-#include <OpenEXR/ImfMultiPartOutputFile.h>
-#include <OpenEXR/ImfOutputPart.h>
 #include <OpenEXR/ImfRgbaFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 #include <fmt/format.h>
@@ -214,30 +210,7 @@ TEST(ExrRead, FirstSuitablePartOfSeveral) {
   const TemporaryFolder folder;
   const std::string path = folder.file("parts.exr");
   const Image picture = smooth_picture(16, 8);
-  const ExrVariant depth{.channels = {"Z"}}, color{};
-  Imf::Header headers[] = {exr_header(picture, depth), exr_header(picture, color),
-                           exr_header(picture, color)};
-  const char* names[] = {"depth", "beauty", "other"};
-  for (size_t i = 0; i < 3; ++i) {
-    headers[i].setName(names[i]);
-    headers[i].setType(Imf::SCANLINEIMAGE);
-  }
-  {
-    Imf::MultiPartOutputFile file(path.c_str(), headers, 3, false, 0);
-    for (int i = 0; i < 3; ++i) {
-      std::vector<ExrSamples> samples;
-      samples.reserve(3);
-      Imf::FrameBuffer buffer;
-      const std::vector<std::string>& channels = i == 0 ? depth.channels : color.channels;
-      for (const std::string& name : channels) {
-        samples.emplace_back(Imf::HALF, i == 1 ? picture : Image(16, 8), name);
-        buffer.insert(name, samples.back().slice(headers[i].dataWindow()));
-      }
-      Imf::OutputPart part(file, i);
-      part.setFrameBuffer(buffer);
-      part.writePixels(8);
-    }
-  }
+  write_exr_parts(picture, path);
   ImageReport report;
   expect_equal(read_image(path, &report), picture, "second part");
   ASSERT_EQ(report.notes.size(), 1u);
@@ -247,22 +220,7 @@ TEST(ExrRead, FirstSuitablePartOfSeveral) {
 TEST(ExrRead, RejectsDeepPictures) {
   const TemporaryFolder folder;
   const std::string path = folder.file("deep.exr");
-  {
-    Imf::Header header(4, 2);
-    header.channels().insert("R", Imf::Channel(Imf::HALF));
-    header.compression() = Imf::ZIPS_COMPRESSION;
-    header.setType(Imf::DEEPSCANLINE);
-    Imf::DeepScanLineOutputFile file(path.c_str(), header, 0);
-    unsigned counts[8] = {};
-    half* samples[8] = {};
-    Imf::DeepFrameBuffer buffer;
-    buffer.insertSampleCountSlice(Imf::Slice(Imf::UINT, reinterpret_cast<char*>(counts),
-                                             sizeof(unsigned), 4 * sizeof(unsigned)));
-    buffer.insert("R", Imf::DeepSlice(Imf::HALF, reinterpret_cast<char*>(samples), sizeof(half*),
-                                      4 * sizeof(half*), sizeof(half)));
-    file.setFrameBuffer(buffer);
-    file.writePixels(2);
-  }
+  write_deep_exr(path);
   EXPECT_EQ(image_error(path, ErrorKind::unsupported),
             path + ": is a deep picture, expected a flat one");
 }

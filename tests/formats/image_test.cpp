@@ -70,6 +70,32 @@ TEST(Environment, AnyShapeIsAcceptedAndOddOnesAreNoted) {
   }
 }
 
+TEST(Environment, OtherLayoutsAreRefusedByName) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.exr");
+  const struct {
+    int width, height;
+    const char* named;  ///< nullptr: accepted
+  } shapes[] = {{64, 64, "angular map"}, {64, 48, "a cross"},    {48, 64, "a cross"},
+                {96, 16, "in a strip"},  {16, 96, "in a strip"}, {64, 32, nullptr},
+                {65, 64, nullptr},       {12, 12, nullptr},      {90, 15, nullptr}};
+  for (const auto& shape : shapes) {
+    write_exr(Image(shape.width, shape.height, Rgb(1, 1, 1)), path);
+    const std::string error = error_of(
+        path, [&] { read_environment(path); }, ErrorKind::unsupported);
+    if (shape.named) {
+      EXPECT_NE(error.find(shape.named), std::string::npos) << error;
+      EXPECT_NE(error.find("expected a lat-long environment"), std::string::npos) << error;
+    } else {
+      EXPECT_EQ(error, "");
+    }
+    // The picture itself is fine, and so is an environment that says it is one.
+    EXPECT_EQ(read_image(path).width, shape.width);
+    write_exr(Image(shape.width, shape.height, Rgb(1, 1, 1)), path, ExrPixelType::half_float, true);
+    EXPECT_EQ(read_environment(path).width, shape.width);
+  }
+}
+
 TEST(Environment, SharedMapsHaveTheirSizesAndPositiveValues) {
   const std::filesystem::path folder = shared_data() / "env";
   if (!std::filesystem::exists(folder))

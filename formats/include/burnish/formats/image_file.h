@@ -56,8 +56,11 @@ struct EnvironmentReport {
 /// that is missing, truncated, broken, or of another kind.
 Image read_image(const std::string& path, ImageReport* report = nullptr);
 
-/// Reads a lat-long environment: read_image, then sanitize_environment. A cube map (by the OpenEXR
-/// envmap attribute) is refused; a width that is not twice the height is accepted with a note.
+/// Reads a lat-long environment: read_image, then sanitize_environment. Other layouts are refused
+/// by name: a cube map (by the OpenEXR envmap attribute) and, by their proportions, angular maps
+/// and mirror balls (1:1), crosses (4:3, 3:4) and strips (6:1, 1:6) of cube faces; not where the
+/// envmap attribute says lat-long, nor below 16 pixels' width or height. Any other width that is
+/// not twice the height is accepted with a note.
 Image read_environment(const std::string& path, EnvironmentReport* report = nullptr);
 
 /// Makes every value finite and >= 0: NaN, negative values and -infinity become 0; +infinity
