@@ -27,7 +27,8 @@ constexpr int kBaseRows = 24;  // of cells, before they are split where the map 
 constexpr int kNormals = 64;  // of the irradiance: it has few degrees of freedom (order 4 suffices)
 // More steps between two new lobes cost time and find no better fit on the maps of docs/lights.md.
 constexpr int kStepsPerLobe = 8, kFinalSteps = 60;
-constexpr size_t kExtraLobes = 3;  // of the second way to a mixture; six took longer for no less
+constexpr double kPolishGain = 1.1;  // an error this much above a target may fall to it
+constexpr size_t kExtraLobes = 3;    // of the second way to a mixture; six took longer for no less
 constexpr double kTolerance = 1e-4, kFinalTolerance = 1e-6;
 // While lobes are added, irradiance counts less: it would draw them to broad compromises.
 constexpr double kStartIrradianceShare = 0.5;
@@ -184,16 +185,16 @@ class ShapeFit {
   // when `good_enough(shapes)`, which is asked after each lobe and, when it says yes, once more
   // after polishing.
   std::vector<LobeShape> run(
-      size_t count, const std::function<bool(const std::vector<LobeShape>&)>& good_enough) {
+      size_t count, const std::function<bool(const std::vector<LobeShape>&, double)>& good_enough) {
     const LobeDictionary dictionary(start_, limits_);
     std::vector<LobeShape> shapes;
     while (shapes.size() < count) {
       shapes.push_back(dictionary.propose(mixture_residual(start_, shapes)));
       refine(start_, kStepsPerLobe, kTolerance, shapes);
-      if (shapes.size() == count || !good_enough(shapes)) continue;
+      if (shapes.size() == count || !good_enough(shapes, kPolishGain)) continue;
       std::vector<LobeShape> polished = shapes;
       polish(polished);
-      if (good_enough(polished)) return polished;
+      if (good_enough(polished, 1)) return polished;
     }
     std::vector<LobeShape> pruned = shapes;
     polish(shapes);
@@ -246,7 +247,7 @@ class ShapeFit {
 // The lobes of a map without compact sources, in its units. `good_enough` is asked of the lights.
 std::vector<EnvironmentLobe> fit_mixture(
     const Image& environment, const LightFitOptions& options, size_t count,
-    const std::function<bool(const std::vector<EnvironmentLobe>&)>& good_enough,
+    const std::function<bool(const std::vector<EnvironmentLobe>&, double)>& good_enough,
     const std::function<bool(size_t)>& go_on, int& iterations) {
   const std::vector<EnvironmentCell> cells =
       environment_cells(environment, kBaseRows, options.cells);
@@ -260,8 +261,8 @@ std::vector<EnvironmentLobe> fit_mixture(
       std::clamp(narrowest_bandwidth(finest), options.min_bandwidth, options.max_bandwidth),
       options.isotropic};
   ShapeFit fit(target, limits, go_on);
-  const auto shapes = fit.run(count, [&](const std::vector<LobeShape>& found) {
-    return options.target_error > 0 && good_enough(color_shapes(target, found));
+  const auto shapes = fit.run(count, [&](const std::vector<LobeShape>& found, double slack) {
+    return options.target_error > 0 && good_enough(color_shapes(target, found), slack);
   });
   iterations += fit.iterations();
   return color_shapes(target, shapes);
@@ -320,8 +321,8 @@ LightFit fit_light(const Image& environment, const LightFitOptions& options,
     all.insert(all.end(), mixture.begin(), mixture.end());
     return make_rig(std::move(all), peak);
   };
-  const auto good_enough = [&](const std::vector<EnvironmentLobe>& mixture) {
-    return radiance_error(map, rig_with(mixture)) <= options.target_error;
+  const auto good_enough = [&](const std::vector<EnvironmentLobe>& mixture, double slack) {
+    return radiance_error(map, rig_with(mixture)) <= slack * options.target_error;
   };
   std::vector<EnvironmentLobe> mixture;
   if (taken < wanted)

@@ -11,7 +11,7 @@ FluxVectors environment_flux(const Image& environment) {
   constexpr int kRows = 96;
   FluxVectors flux;
   for (const EnvironmentCell& cell : environment_cells(environment, kRows, 0))
-    flux.push_back(cell_vector_irradiance(environment, cell));
+    flux.push_back({cell_vector_irradiance(environment, cell)});
   return flux;
 }
 
@@ -22,6 +22,7 @@ void append_lobe_flux(const EnvironmentLobe& light, FluxVectors& flux) {
   constexpr int kNodes = 48;  // per dimension
   const AnisotropicGaussian<float>& lobe = light.lobe;
   const Frame<double> frame = lobe.frame.cast<double>();
+  const Eigen::Array3d color = double(lobe.amplitude) * light.color.cast<double>();
   const double bx = lobe.bandwidth_x, by = lobe.bandwidth_y;
   const auto reach = [](double bandwidth, double limit) {
     const double five_sigma = 5 / std::sqrt(2 * std::max(bandwidth, 1e-12));
@@ -34,16 +35,16 @@ void append_lobe_flux(const EnvironmentLobe& light, FluxVectors& flux) {
     for (int j = 0; j < kNodes; ++j) {
       const double b = -reach_b + (j + 0.5) * step_b, x = ca * std::sin(b), z = ca * std::cos(b);
       const double f = z * std::exp(-bx * x * x - by * sa * sa) * ca * step_a * step_b;
-      flux.push_back(
-          frame.to_world({x, sa, z}) *
-          (double(lobe.amplitude) * f * light.color.cast<double>()).matrix().transpose());
+      flux.push_back({frame.to_world({x, sa, z}) * (f * color.abs()).matrix().transpose(),
+                      color.sign().matrix().transpose()});
     }
   }
 }
 
 Eigen::RowVector3d irradiance_of_flux(const FluxVectors& flux, const Vector3d& normal) {
   Eigen::RowVector3d sum = Eigen::RowVector3d::Zero();
-  for (const Eigen::Matrix3d& f : flux) sum += (normal.transpose() * f).cwiseMax(0.0);
+  for (const Flux& f : flux)
+    sum += f.sign.cwiseProduct((normal.transpose() * f.vector).cwiseMax(0.0));
   return sum;
 }
 

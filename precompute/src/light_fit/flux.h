@@ -9,9 +9,14 @@
 
 namespace burnish {
 
-/// Flux vectors (the integral of radiance * direction over a small area), a column a channel: the
-/// irradiance on a normal n is the sum of max(n . flux, 0), exact but for the areas on its horizon.
-using FluxVectors = std::vector<Eigen::Matrix3d>;
+/// The integral of (|radiance| * direction) over a small area, a column a channel, and the sign of
+/// each channel. The irradiance on a normal n is the sum of sign * max(n . vector, 0), exact but
+/// for the areas on its horizon.
+struct Flux {
+  Eigen::Matrix3d vector;
+  Eigen::RowVector3d sign = Eigen::RowVector3d::Ones();
+};
+using FluxVectors = std::vector<Flux>;
 
 /// Flux of an environment over areas 2 degrees wide.
 FluxVectors environment_flux(const Image& environment);

@@ -168,7 +168,8 @@ int refine_lobes(const LightFitTarget& target, const LobeLimits& limits, int max
   }
   AskToGoOn ask(keep_going);
   ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  // There are few rows, and a lobe nearly round makes columns vanish: a Cholesky factor may fail.
+  options.linear_solver_type = ceres::DENSE_QR;
   options.num_threads = 1;  // one residual block; and the same bytes on any machine
   options.max_num_iterations = max_steps;
   options.function_tolerance = tolerance;

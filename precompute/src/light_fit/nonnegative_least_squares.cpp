@@ -29,7 +29,7 @@ bool independent(const Eigen::MatrixXd& gram, const std::vector<int>& passive, i
 // Where the Cholesky factor of a Gram matrix still holds.
 constexpr double kLeastShare = 1e-10;
 // Without bounds, lobes much alike would take huge colours of opposite sign: up to 1 / sqrt(this).
-constexpr double kLeastSignedShare = 1e-6;
+constexpr double kLeastSignedShare = 1e-3;
 
 }  // namespace
 
