@@ -225,8 +225,9 @@ class ShapeFit {
     polish(shapes);
   }
 
+  // Irradiance counts less here, too: both candidates were polished with all of its weight.
   double squared_error(const std::vector<LobeShape>& shapes) const {
-    return mixture_residual(target_, shapes).squaredNorm();
+    return mixture_residual(start_, shapes).squaredNorm();
   }
 
   void refine(const LightFitTarget& goal, int steps, double tolerance,

@@ -191,15 +191,155 @@ TEST(FitLight, OfATurnedMapIsTheTurnedFit) {
   EXPECT_LT(difference.irradiance_relative_l2, 3e-3) << "seed " << kSeed + 2;
 }
 
-TEST(FitLight, KeepsTheErrorOfAMapTurnedAboutItsPoles) {
-  const Image image = room(256, 128);
+// The map turned about its poles by whole pixels: what was column 0 is column `columns`.
+Image turned_by_columns(const Image& image, int columns) {
   Image turned = image;
   for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) turned.at((x + 37) % image.width, y) = image.at(x, y);
+    for (int x = 0; x < image.width; ++x)
+      turned.at((x + columns) % image.width, y) = image.at(x, y);
+  return turned;
+}
+
+TEST(FitLight, OfAMapTurnedByWholePixelsIsTheTurnedFit) {
+  constexpr int kWidth = 256, kColumns = 37;
+  std::mt19937 random(kSeed + 6);
+  const Image image = render(random_rig(3, random), kWidth, kWidth / 2);
+  const Image turned = turned_by_columns(image, kColumns);
+  LightFitOptions options;
+  options.lobes = 3;
+  LightFit fit = fit_light(image, options);
+  const LightFit of_turned = fit_light(turned, options);
+  // Longitude falls from left to right.
+  rotate_lobes(
+      fit.rig,
+      Eigen::AngleAxisf(-2 * kPi<float> * kColumns / kWidth, Vector3f::UnitY()).toRotationMatrix());
+  // The same pixels in other cells: each fit is off the truth by up to 4 % in its own way, most of
+  // it for the narrowest lobe, which is one cell wide.
+  const LightFitError difference = measure_light_fit(render(fit.rig, 256, 128), of_turned.rig);
+  EXPECT_LT(difference.relative_l2, 0.06) << "seed " << kSeed + 6;
+  EXPECT_LT(difference.irradiance_relative_l2, 2e-3) << "seed " << kSeed + 6;
+}
+
+TEST(FitLight, OfAResampledTurnedMapIsTheTurnedFit) {
+  std::mt19937 random(kSeed + 7);
+  const Image image = render(random_rig(3, random), 256, 128);
+  const Eigen::Quaternionf rotation = random_rotation(random);
+  Image turned(256, 128);
+  constexpr int kSub = 4;
+  for (int y = 0; y < turned.height; ++y)
+    for (int x = 0; x < turned.width; ++x) {
+      Rgb sum = Rgb::Zero();
+      for (int j = 0; j < kSub; ++j)
+        for (int i = 0; i < kSub; ++i) {
+          const Vector3d v = direction_from_latlong((x + (i + 0.5) / kSub) / turned.width,
+                                                    (y + (j + 0.5) / kSub) / turned.height);
+          sum += eval_environment(image, rotation.conjugate().cast<double>() * v);
+        }
+      turned.at(x, y) = sum / (kSub * kSub);
+    }
+  LightFitOptions options;
+  options.lobes = 3;
+  LightFit fit = fit_light(image, options);
+  const LightFit of_turned = fit_light(turned, options);
+  rotate_lobes(fit.rig, rotation.toRotationMatrix());
+  // As above; resampling blurs by a pixel (variance 2e-4 / 12 each way), of the narrowest lobe
+  // (variance 5e-3) less than a per cent.
+  const LightFitError difference = measure_light_fit(render(fit.rig, 256, 128), of_turned.rig);
+  EXPECT_LT(difference.relative_l2, 0.06) << "seed " << kSeed + 7;
+  EXPECT_LT(difference.irradiance_relative_l2, 3e-3) << "seed " << kSeed + 7;
+}
+
+TEST(FitLight, KeepsTheErrorOfAMapTurnedAboutItsPoles) {
+  const Image image = room(256, 128), turned = turned_by_columns(image, 37);
   const LightFit a = fit_light(image, quick(6)), b = fit_light(turned, quick(6));
   // Different cells may lead to different local minima of similar worth.
   EXPECT_NEAR(a.error.relative_l2, b.error.relative_l2, 0.1 * a.error.relative_l2);
   EXPECT_LT(std::max(a.error.irradiance_relative_l2, b.error.irradiance_relative_l2), 0.015);
+}
+
+TEST(FitLight, IsotropicLobesAreRoundAndRecovered) {
+  std::mt19937 random(kSeed + 8);
+  LightRig truth = random_rig(3, random);
+  for (EnvironmentLobe& light : truth.lobes) light.lobe.bandwidth_y = light.lobe.bandwidth_x;
+  LightFitOptions options;
+  options.lobes = 3;
+  options.isotropic = true;
+  const LightFit fit = fit_light(render(truth, 256, 128), options);
+  ASSERT_EQ(fit.rig.lobes.size(), 3u);
+  // As for KnownMixture.
+  EXPECT_LT(fit.error.relative_l2, 0.06) << "seed " << kSeed + 8;
+  EXPECT_LT(fit.error.irradiance_relative_l2, 2e-3) << "seed " << kSeed + 8;
+  // A compact source, too.
+  Image image = room(128, 64);
+  image.at(30, 20) = Rgb(1e6f, 1e6f, 1e6f);
+  options = quick(6);
+  options.isotropic = true;
+  const LightFit round = fit_light(image, options);
+  for (const EnvironmentLobe& light : round.rig.lobes)
+    EXPECT_EQ(light.lobe.bandwidth_x, light.lobe.bandwidth_y);
+  EXPECT_LT((energy(round.rig) / energy(image) - 1).abs().maxCoeff(), 0.01);
+}
+
+TEST(FitLight, AnisotropicLobesFitBetterThanRoundOnes) {
+  const Image image = room(128, 64);
+  for (const int lobes : {5, 10}) {
+    LightFitOptions options = quick(lobes);
+    const double anisotropic = fit_light(image, options).error.relative_l2;
+    options.isotropic = true;
+    EXPECT_LT(anisotropic, fit_light(image, options).error.relative_l2) << lobes;
+  }
+}
+
+TEST(FitLight, SignedColorsRecoverAHole) {
+  // A wide lobe with a dark hole, which no sum of two positive lobes makes.
+  LightRig truth;
+  EnvironmentLobe wide, hole;
+  wide.lobe = {frame_from_axis(Vector3f(0.6f, 0.64f, 0.48f)), 2, 2, 1};
+  wide.color = Rgb(2, 3, 4);
+  hole.lobe = {frame_from_axis(Vector3f(0.48f, 0.8f, 0.36f)), 20, 60, 1};
+  hole.color = Rgb(-1, -1.5f, -2);
+  truth.lobes = {wide, hole};
+  Image image = render(truth, 256, 128);
+  for (Rgb& pixel : image.pixels) pixel = pixel.max(0);  // where the hole is wider than the lobe
+  LightFitOptions options = quick(2);
+  const LightFit positive = fit_light(image, options);
+  options.signed_colors = true;
+  const LightFit fit = fit_light(image, options);
+  for (const EnvironmentLobe& light : positive.rig.lobes) EXPECT_GE(light.color.minCoeff(), 0);
+  EXPECT_GT(positive.error.relative_l2, 3 * fit.error.relative_l2);
+  ASSERT_EQ(fit.rig.lobes.size(), 2u);
+  EXPECT_LT(fit.rig.lobes[1].color.maxCoeff(), 0);  // by falling size of its power
+  // Pixels of 1.4 degrees and cells of six: a per cent or two.
+  EXPECT_LT(fit.error.relative_l2, 0.03);
+  EXPECT_LT(fit.error.irradiance_relative_l2, 3e-3);
+}
+
+TEST(FitLight, TakesNoMoreLobesThanATargetAsksFor) {
+  std::mt19937 random(kSeed + 9);
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed + 9);
+  const Image image = render(random_rig(4, random), 128, 64);
+  LightFitOptions options;
+  options.lobes = 12;
+  options.target_error = 0.1;
+  const LightFit exact = fit_light(image, options);
+  EXPECT_TRUE(exact.met_target);
+  EXPECT_LE(exact.error.relative_l2, 0.1);
+  // Each lobe is more than a hundredth of the squared norm; one more than there are may be taken
+  // for a corner that the others leave.
+  EXPECT_GE(exact.rig.lobes.size(), 4u);
+  EXPECT_LE(exact.rig.lobes.size(), 5u);
+  options.target_error = 0.7;
+  const LightFit rough = fit_light(image, options);
+  EXPECT_TRUE(rough.met_target);
+  EXPECT_LE(rough.error.relative_l2, 0.7);
+  EXPECT_LT(rough.rig.lobes.size(), exact.rig.lobes.size());
+  options.lobes = 3;
+  options.target_error = 0.1;
+  const LightFit short_of_it = fit_light(image, options);
+  EXPECT_FALSE(short_of_it.met_target);
+  EXPECT_EQ(short_of_it.rig.lobes.size(), 3u);
+  options.target_error = 0;
+  EXPECT_TRUE(fit_light(image, options).met_target);  // there was none
 }
 
 TEST(FitLight, KeepsTheIrradianceOfARoom) {
@@ -239,7 +379,9 @@ TEST(FitLight, OfAConstantMapKeepsRadianceAndIrradiance) {
             3e-3);
 }
 
-TEST(FitLight, SplitsTheSunFromTheSky) {
+class SunIn : public testing::TestWithParam<Vector3d> {};
+
+TEST_P(SunIn, AnyPlaceIsSplitFromTheSky) {
   constexpr int kWidth = 512, kHeight = 256;
   Image sky(kWidth, kHeight);
   for (int y = 0; y < kHeight; ++y)
@@ -249,14 +391,16 @@ TEST(FitLight, SplitsTheSunFromTheSky) {
           v.y() > 0 ? Rgb(0.5f, 0.8f, 1.5f) * float(1.2 - v.y()) : Rgb(0.2f, 0.15f, 0.1f);
     }
   Image image = sky;
-  const Vector3d sun_axis = Vector3d(0.3, 0.8, 0.5).normalized();
+  const Vector3d sun_axis = GetParam().normalized();
   Eigen::Array3d sun_energy = Eigen::Array3d::Zero();
+  Vector3d centroid = Vector3d::Zero();
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < kWidth; ++x) {
       const Vector3d v = direction_from_latlong((x + 0.5) / kWidth, (y + 0.5) / kHeight);
       if (angle_between(v, sun_axis) > 0.015) continue;
       image.at(x, y) = Rgb(1e8f, 9e7f, 7e7f);
       sun_energy += latlong_pixel_solid_angle(image, y) * image.at(x, y).cast<double>();
+      centroid += latlong_pixel_solid_angle(image, y) * v;
     }
   const LightFit fit = fit_light(image, quick(7));
   ASSERT_EQ(fit.rig.lobes.size(), 7u);
@@ -265,13 +409,19 @@ TEST(FitLight, SplitsTheSunFromTheSky) {
   rest.lobes.assign(fit.rig.lobes.begin() + 1, fit.rig.lobes.end());
   // Colours and bandwidths are floats; the sky behind the sun counts 1e-8.
   EXPECT_LT((energy(sun) / sun_energy - 1).abs().maxCoeff(), 1e-5);
-  EXPECT_LT(angle_between<double>(sun.lobes[0].lobe.frame.z.cast<double>(), sun_axis), 0.003);
+  EXPECT_LT((sun.lobes[0].lobe.frame.z.cast<double>() - centroid.normalized()).norm(), 1e-6);
   // The sky is not sacrificed to the sun's outline: the other lobes fit it about as well as six
   // lobes do when there is no sun (not the same: its place was filled, the cells differ).
   const LightFitError alone = fit_light(sky, quick(6)).error, of_sky = measure_light_fit(sky, rest);
   EXPECT_LT(of_sky.relative_l2, 1.2 * alone.relative_l2);
-  EXPECT_LT(of_sky.irradiance_relative_l2, 0.01);
+  EXPECT_LT(of_sky.irradiance_relative_l2, 0.02);  // as asked of any fit
 }
+
+// Somewhere, at the poles, beside one, across the seam.
+INSTANTIATE_TEST_SUITE_P(Places, SunIn,
+                         testing::Values(Vector3d(0.3, 0.8, 0.5), Vector3d(0, 1, 0),
+                                         Vector3d(0.008, 1, 0.004), Vector3d(0, -1, 0),
+                                         Vector3d(0, 0.3, -1)));
 
 TEST(FitLight, OfABlackMapHasNoLobes) {
   const LightFit fit = fit_light(Image(16, 8));
@@ -342,15 +492,20 @@ TEST(FitLight, ScalesWithTheMap) {
 
 TEST(FitLight, IsTheSameAtAnyNumberOfThreads) {
   const Image image = room(128, 64);
-  const auto fit_with = [&](size_t threads) {
-    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    return fit_light(image, quick());
-  };
-  const LightFit one = fit_with(1), four = fit_with(4);
-  EXPECT_TRUE(same_bytes(one.rig, four.rig));
-  EXPECT_EQ(one.error.relative_l2, four.error.relative_l2);
-  EXPECT_EQ(one.error.irradiance_relative_l2, four.error.irradiance_relative_l2);
-  EXPECT_EQ(one.iterations, four.iterations);
+  for (const bool variant : {false, true}) {
+    LightFitOptions options = quick();
+    options.isotropic = options.signed_colors = variant;
+    options.target_error = variant ? 0.4 : 0;
+    const auto fit_with = [&](size_t threads) {
+      const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+      return fit_light(image, options);
+    };
+    const LightFit one = fit_with(1), four = fit_with(4);
+    EXPECT_TRUE(same_bytes(one.rig, four.rig));
+    EXPECT_EQ(one.error.relative_l2, four.error.relative_l2);
+    EXPECT_EQ(one.error.irradiance_relative_l2, four.error.irradiance_relative_l2);
+    EXPECT_EQ(one.iterations, four.iterations);
+  }
 }
 
 TEST(FitLight, RefusesBadPixels) {
@@ -379,6 +534,9 @@ TEST(FitLight, RefusesOptionsOutOfRange) {
   refused([](LightFitOptions& o) { o.lobes = 0; });
   refused([](LightFitOptions& o) { o.lobes = 129; });
   refused([](LightFitOptions& o) { o.cells = 255; });
+  refused([](LightFitOptions& o) { o.target_error = -0.1; });
+  refused([](LightFitOptions& o) { o.target_error = std::nan(""); });
+  refused([](LightFitOptions& o) { o.target_error = 1.5; });
   refused([](LightFitOptions& o) { o.irradiance_weight = -1; });
   refused([](LightFitOptions& o) { o.irradiance_weight = std::nan(""); });
   refused([](LightFitOptions& o) { o.min_bandwidth = 0; });
