@@ -134,6 +134,8 @@ TEST_F(EnvironmentInput, DialsReachTheFit) {
   write_exr(picture(), file("a.exr"));
   for (const EnvironmentLobe& light : expect_fit(file("a.exr"), {"--isotropic"}).lobes)
     EXPECT_EQ(light.lobe.bandwidth_x, light.lobe.bandwidth_y);
+  // The light of a dark room with one bright patch, less what would spill over its edge.
+  EXPECT_FALSE(expect_fit(file("a.exr"), {"--signed"}).lobes.empty());
   // Without any error only a map made of lobes could be; with an error of 1 the first lobe will do.
   EXPECT_EQ(expect_fit(file("a.exr"), {"--target-error", "1"}).lobes.size(), 1u);
   EXPECT_NE(
