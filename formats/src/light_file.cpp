@@ -53,7 +53,7 @@ EnvironmentLobe read_lobe(const JsonPlace& place, int /*version*/) {
   light.lobe.frame = read_frame(place.at("axis"), place.at("tangent"));
   light.lobe.bandwidth_x = place.at("bandwidth_x").float_in(0, kMax);
   light.lobe.bandwidth_y = place.at("bandwidth_y").float_in(0, kMax);
-  light.color = read_vector(place.at("color"), 0).array();
+  light.color = read_vector(place.at("color")).array();
   return light;
 }
 
