@@ -187,6 +187,24 @@ TEST(DirectionalLight, GivesItsIrradianceAtNormalIncidence) {
   }
 }
 
+TEST(DirectionalLight, SetsGradually) {
+  for (const float radius : {0.00465f, 0.5f}) {
+    for (const double share : {-1.1, -0.9, -0.3, 0.0, 0.5, 1.1}) {
+      const double angle = kPi<double> / 2 - share * double(radius);
+      const DirectionalLight sun{Vector3f(float(std::sin(angle)), 0, float(std::cos(angle))),
+                                 radius, irradiance_of_disc(Rgb::Ones(), radius)};
+      const LightAtPoint seen = light_at(sun, Vector3f::Zero(), Vector3f::UnitZ());
+      EXPECT_EQ(seen.reaches, share > -1);
+      const double truth = cap_truth(double(radius), angle);
+      const double overhead = kPi<double> * std::pow(std::sin(double(radius)), 2);
+      // The stated 2e-6, and the rounding of the axis' z, 3e-8 of the radius.
+      if (seen.reaches) {
+        EXPECT_NEAR(irradiance(seen) / overhead, truth / overhead, 4e-6) << radius << " " << share;
+      }
+    }
+  }
+}
+
 TEST(DirectionalLight, IsAFarSphereOfTheSameSize) {
   for (const float radius : {1e-3f, 0.2f, 1.2f}) {
     const Vector3f toward = Vector3f(2, -1, 0.4f).normalized();
