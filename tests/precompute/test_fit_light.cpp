@@ -210,7 +210,7 @@ TEST(FitLight, OfAMapTurnedByWholePixelsIsTheTurnedFit) {
   LightFit fit = fit_light(image, options);
   const LightFit of_turned = fit_light(turned, options);
   // Longitude falls from left to right.
-  rotate_lobes(
+  rotate(
       fit.rig,
       Eigen::AngleAxisf(-2 * kPi<float> * kColumns / kWidth, Vector3f::UnitY()).toRotationMatrix());
   // The same pixels in other cells: each fit is off the truth by up to 4 % in its own way, most of
@@ -241,7 +241,7 @@ TEST(FitLight, OfAResampledTurnedMapIsTheTurnedFit) {
   options.lobes = 3;
   LightFit fit = fit_light(image, options);
   const LightFit of_turned = fit_light(turned, options);
-  rotate_lobes(fit.rig, rotation.toRotationMatrix());
+  rotate(fit.rig, rotation.toRotationMatrix());
   // As above; resampling blurs by a pixel (variance 2e-4 / 12 each way), of the narrowest lobe
   // (variance 5e-3) less than a per cent.
   const LightFitError difference = measure_light_fit(render(fit.rig, 256, 128), of_turned.rig);

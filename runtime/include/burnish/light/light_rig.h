@@ -12,7 +12,7 @@ namespace burnish {
 /// frame.
 struct EnvironmentLobe {
   AnisotropicGaussian<float> lobe;
-  Rgb color = Rgb::Zero();  ///< radiance at the lobe's axis, >= 0
+  Rgb color = Rgb::Zero();  ///< radiance at the lobe's axis; >= 0 but for fits with signed colours
 };
 
 /// A distant, uniformly bright disc, such as the sun, in the rig's frame.
