@@ -65,6 +65,10 @@ void add_shading_options(CLI::App& app, ShadingOptions& options) {
       app, "--integral", options.integral,
       {{"fast", AsgIntegral::fast}, {"series", AsgIntegral::series}, {"exact", AsgIntegral::exact}},
       "accuracy of a lobe's integral");
+  add_choice(app, "--ladder", options.ladder, {{"on", true}, {"off", false}},
+             "whether wide lights see through the visibility ladder, where one was baked");
+  add_number(app, "--split-bandwidth", "A", options.split_bandwidth, {0, 1000},
+             "lights wider than this are split into narrower ones, 0 for none");
   add_number(app, "--environment-taps", "N", options.environment_taps, {1, 64},
              "lookups along a highlight's long axis, at most");
 }

@@ -17,8 +17,8 @@ void add_coefficient_option(CLI::App& app, WriteTransferOptions& options);
 /// Throws UsageError where they contradict each other. For before anything is read.
 void check_bake_options(const BakeOptions& options);
 
-/// Declares the dials of shading but for `terms`: --visibility, --cosine, --integral and
-/// --environment-taps.
+/// Declares the dials of shading but for `terms`: --visibility, --cosine, --integral, --ladder,
+/// --split-bandwidth and --environment-taps.
 void add_shading_options(CLI::App& app, ShadingOptions& options);
 
 }  // namespace burnish::tools

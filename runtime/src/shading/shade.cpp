@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "burnish/light/lobe_split.h"
 #include "burnish/sphere/asg_product.h"
 #include "burnish/sphere/lobe_domain.h"
 #include "burnish/sphere/lobe_moments.h"
@@ -261,10 +262,9 @@ PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options
   prepared.directionals = lit(rig.directionals, "directional light", &DirectionalLight::irradiance);
   prepared.spheres = lit(rig.spheres, "sphere light", &SphereLight::radiance);
   prepared.rectangles = lit(rig.rectangles, "rectangle light", &RectangleLight::radiance);
-  prepared.lobes.reserve(rig.lobes.size());
-  for (size_t i = 0; i < rig.lobes.size(); ++i) {
-    const EnvironmentLobe& light = rig.lobes[i];
-    require(domain_error(light.lobe), "light lobe", i);
+  for (size_t i = 0; i < rig.lobes.size(); ++i)
+    require(domain_error(rig.lobes[i].lobe), "light lobe", i);
+  for (const EnvironmentLobe& light : split_wide_lobes(rig.lobes, options.split_bandwidth)) {
     PreparedLobe lobe;
     lobe.lobe = light.lobe;
     lobe.lobe.amplitude = 1;

@@ -31,6 +31,10 @@ struct ShadingOptions {
   /// The horizon-normalised diffuse term of lobes wider than the transfer's crossover sees through
   /// the visibility ladder, where one was baked. False: through the SSDF, as the papers do.
   bool ladder = true;
+  /// prepare_lights splits an environment's lobes wider than this into narrower ones
+  /// (lobe_split.h), each with a boundary of its own; 0: none. Costs as many times the lobes; buys
+  /// accuracy where there is no ladder (docs/lights.md, "Lobe width").
+  float split_bandwidth = 0;
 };
 
 /// A lobe of light with what shading needs of its shape: prepared once per change of the lights.
