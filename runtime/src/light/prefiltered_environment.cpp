@@ -3,201 +3,198 @@
 #include <algorithm>
 #include <cmath>
 
-#include "burnish/sphere/octahedral_map.h"
+#include "light/cube_faces.h"
 
 // A lobe's mean radiance is a 2-D Gaussian average over the unit disc of the orthographic plane,
-// because (v . z) dv = dx dy. Both steps below are sums over taps in that plane.
+// because (v . z) dv = dx dy. All means are formed as a + t (b - a), which is a where b = a.
 namespace burnish {
 namespace {
 
-struct OctahedralImage {
-  int resolution = 0;
-  std::vector<Rgb> texels;
-};
+using Texel = Eigen::Array4f;
 
-double texel_angle(int resolution) { return std::sqrt(4 * kPi<double>) / resolution; }
+Texel mix(const Texel& a, const Texel& b, float t) { return a + t * (b - a); }
 
-Rgb bilinear(const std::vector<Rgb>& texels, int resolution, const Vector3f& direction) {
-  const auto footprint = octahedral_footprint(direction_to_octahedral(direction), resolution);
-  Rgb sum = Rgb::Zero();
-  for (int i = 0; i < 4; ++i) sum += footprint.weight[i] * texels[footprint.texel[i]];
-  return sum;
+/// Value on the second of three coefficients of a quadratic B-spline, t in [0, 1] along it.
+Texel spline(const Texel* c, float t) {
+  return mix(mix(c[0], c[1], 0.5f * (1 + t)), mix(c[1], c[2], 0.5f * t), t);
 }
 
-/// The lat-long map, area-averaged onto an octahedral map fine enough to hold all of it.
-OctahedralImage octahedral_from_latlong(const Image& environment) {
-  constexpr int kSubsamples = 4;
-  constexpr int kMaxResolution = 2048;
-  OctahedralImage image;
-  image.resolution = 16;
-  while (image.resolution < kMaxResolution &&
-         texel_angle(image.resolution) > kPi<double> / environment.height)
-    image.resolution *= 2;
-  const int n = image.resolution;
-  image.texels.resize(static_cast<size_t>(n) * n);
-  for (int y = 0; y < n; ++y) {
-    for (int x = 0; x < n; ++x) {
-      Rgb sum = Rgb::Zero();
-      for (int s = 0; s < kSubsamples * kSubsamples; ++s) {
-        const double u = (x + (s % kSubsamples + 0.5) / kSubsamples) / n;
-        const double v = (y + (s / kSubsamples + 0.5) / kSubsamples) / n;
-        sum += eval_environment(environment, octahedral_to_direction(u, v));
-      }
-      image.texels[static_cast<size_t>(y) * n + x] = sum / float(kSubsamples * kSubsamples);
-    }
-  }
-  return image;
-}
-
-OctahedralImage half_resolution(const OctahedralImage& fine) {
-  OctahedralImage coarse{fine.resolution / 2, {}};
-  coarse.texels.reserve(fine.texels.size() / 4);
-  for (int y = 0; y < coarse.resolution; ++y) {
-    for (int x = 0; x < coarse.resolution; ++x) {
-      const Rgb* row = fine.texels.data() + static_cast<size_t>(2 * y) * fine.resolution + 2 * x;
-      coarse.texels.push_back((row[0] + row[1] + row[fine.resolution] + row[fine.resolution + 1]) /
-                              4);
-    }
-  }
-  return coarse;
-}
-
-struct Tap {
-  float x, y, z, weight;
-};
-
-/// Taps of a Gaussian of this variance on a square grid of the orthographic disc; weights sum to
-/// one.
-std::vector<Tap> disc_taps(double variance, double spacing) {
-  const int radius = static_cast<int>(std::ceil(std::min(3 * std::sqrt(variance), 1.0) / spacing));
-  std::vector<Tap> taps;
-  double sum = 0;
-  for (int j = -radius; j <= radius; ++j) {
-    for (int i = -radius; i <= radius; ++i) {
-      const double x = i * spacing, y = j * spacing, r2 = x * x + y * y;
-      if (r2 >= 1 || r2 > 9 * variance) continue;
-      const double weight = std::exp(-r2 / (2 * variance));
-      taps.push_back({float(x), float(y), float(std::sqrt(1 - r2)), float(weight)});
-      sum += weight;
-    }
-  }
-  for (Tap& tap : taps) tap.weight /= float(sum);
-  return taps;
-}
-
-PrefilteredEnvironment::Level filter_level(const std::vector<OctahedralImage>& pyramid,
-                                           double bandwidth) {
-  const double variance = 1 / (2 * bandwidth);
-  const double sigma = std::sqrt(variance);
-  // The finest source whose texels the taps still cover without gaps; wide lobes also have to
-  // resolve the disc's edge.
-  const double target = std::min(0.7 * sigma, 0.1);
-  size_t source = 0;
-  while (source + 1 < pyramid.size() && texel_angle(pyramid[source + 1].resolution) <= target)
-    ++source;
-  const double spacing = texel_angle(pyramid[source].resolution);
-
-  PrefilteredEnvironment::Level level;
-  level.bandwidth = static_cast<float>(bandwidth);
-  level.resolution = std::max(64, 2 * static_cast<int>(std::ceil(2.9 * std::sqrt(bandwidth))));
-  // Source texels (box and tent: spacing^2 / 4) and this level's own bilinear lookup (texel^2 / 6)
-  // already blur by so much; at most half of the lobe's variance is taken off for them.
-  const double output = texel_angle(level.resolution);
-  const double own = spacing * spacing / 4 + output * output / 6;
-  const std::vector<Tap> taps = disc_taps(std::max(variance - own, variance / 2), spacing);
-
+Texel eval_level(const PrefilteredEnvironment::Level& level, const CubePoint& point) {
   const int n = level.resolution;
-  level.radiance.resize(static_cast<size_t>(n) * n);
-  for (int y = 0; y < n; ++y) {
-    for (int x = 0; x < n; ++x) {
-      const Frame<float> frame = frame_from_axis(octahedral_texel_direction<float>(x, y, n));
-      Rgb sum = Rgb::Zero();
-      for (const Tap& tap : taps)
-        sum += tap.weight * bilinear(pyramid[source].texels, pyramid[source].resolution,
-                                     frame.to_world({tap.x, tap.y, tap.z}));
-      level.radiance[static_cast<size_t>(y) * n + x] = sum;
-    }
-  }
-  return level;
+  const float half = 0.5f * static_cast<float>(n);
+  const float px = (point.x + 1) * half, py = (point.y + 1) * half;
+  const int x = std::clamp(static_cast<int>(px), 0, n - 1);
+  const int y = std::clamp(static_cast<int>(py), 0, n - 1);
+  const float tx = px - static_cast<float>(x), ty = py - static_cast<float>(y);
+  const size_t stride = n + 2;
+  const Texel* corner =
+      level.coefficients.data() + (point.face * stride + y) * stride + static_cast<size_t>(x);
+  const Texel rows[3] = {spline(corner, tx), spline(corner + stride, tx),
+                         spline(corner + 2 * stride, tx)};
+  return spline(rows, ty);
 }
 
-/// Mean radiance under an isotropic lobe: linear in the logarithm of the bandwidth between two
-/// levels.
-Rgb eval_isotropic(const PrefilteredEnvironment& environment, const Vector3f& direction,
-                   float bandwidth) {
-  const auto& levels = environment.levels;
-  const auto upper = std::upper_bound(levels.begin(), levels.end(), bandwidth,
-                                      [](float value, const PrefilteredEnvironment::Level& level) {
-                                        return value < level.bandwidth;
-                                      });
-  const auto& wide = upper == levels.begin() ? levels.front() : *(upper - 1);
-  const Rgb wide_radiance = bilinear(wide.radiance, wide.resolution, direction);
-  if (upper == levels.begin() || upper == levels.end()) return wide_radiance;
-  const float fraction =
-      std::log2(bandwidth / wide.bandwidth) / std::log2(upper->bandwidth / wide.bandwidth);
-  return wide_radiance +
-         fraction * (bilinear(upper->radiance, upper->resolution, direction) - wide_radiance);
+/// Mean square of a sine from the axis in one direction, for a lobe that the unit disc cuts off.
+float disc_variance(float bandwidth) {
+  if (bandwidth < 1e-2f) return 0.25f - bandwidth / 24;
+  if (bandwidth > 16) return 0.5f / bandwidth;
+  return (1 - bandwidth / std::expm1(bandwidth)) / (2 * bandwidth);
 }
+
+/// Share below x of a bell of three equal boxes, of half width `half`, centred at 0: a Gaussian to
+/// within 0.7 %.
+float bell_below(float x, float half) {
+  const float t = std::clamp(1.5f * x / half, -1.5f, 1.5f), size = std::abs(t);
+  const float upper = size < 0.5f ? 0.5f + size * (0.75f - size * size / 3)
+                                  : 1 - (1.5f - size) * (1.5f - size) * (1.5f - size) / 6;
+  return t < 0 ? 1 - upper : upper;
+}
+
+/// The map itself, whose pixels have edges, blurred by a bell of this variance along the meridian
+/// and across it: narrow lobes see few pixels.
+Texel eval_pixels(const Image& map, const Vector3f& direction, float variance) {
+  constexpr float kMostPixels = 4;
+  const Vector2<double> uv = latlong_from_direction(direction.cast<double>());
+  const float x = static_cast<float>(uv.x() * map.width);
+  const float y = static_cast<float>(uv.y() * map.height);
+  const float half = 3 * std::sqrt(variance);
+  const float sine = std::sqrt(direction.x() * direction.x() + direction.z() * direction.z());
+  const float half_y = std::min(half * static_cast<float>(map.height) / kPi<float>, kMostPixels);
+  const float half_x =
+      std::min(half * static_cast<float>(map.width) / (2 * kPi<float> * std::max(sine, 1e-3f)),
+               kMostPixels / std::max(sine, 0.05f));
+  const int last_x = static_cast<int>(std::floor(x + half_x));
+  const int last_y = static_cast<int>(std::floor(y + half_y));
+  const Rgb& middle =
+      map.at(static_cast<int>(uv.x() * map.width), static_cast<int>(uv.y() * map.height));
+  const Texel reference(middle.x(), middle.y(), middle.z(), 0);
+  Texel sum = Texel::Zero();
+  for (int j = static_cast<int>(std::floor(y - half_y)); j <= last_y; ++j) {
+    const float top = static_cast<float>(j) - y;
+    const float row_weight = bell_below(top + 1, half_y) - bell_below(top, half_y);
+    // Beyond a pole is the other side.
+    const bool beyond = j < 0 || j >= map.height;
+    const int row = std::clamp(j < 0    ? -1 - j
+                               : beyond ? 2 * map.height - 1 - j
+                                        : j,
+                               0, map.height - 1);
+    for (int i = static_cast<int>(std::floor(x - half_x)); i <= last_x; ++i) {
+      const float left = static_cast<float>(i) - x;
+      const float weight = row_weight * (bell_below(left + 1, half_x) - bell_below(left, half_x));
+      const int turned = i + (beyond ? map.width / 2 : 0);
+      const Rgb& pixel = map.at((turned % map.width + map.width) % map.width, row);
+      sum += weight * (Texel(pixel.x(), pixel.y(), pixel.z(), 0) - reference);
+    }
+  }
+  return reference + sum;
+}
+
+/// Two neighbouring levels and the share of the narrower, which is made of the map's own pixels
+/// beyond the last level.
+struct Blend {
+  const PrefilteredEnvironment::Level* wide;
+  const PrefilteredEnvironment::Level* narrow;  ///< null: the map's pixels
+  float narrow_variance;
+  float share;  ///< of the narrower
+
+  Blend(const PrefilteredEnvironment& environment, float bandwidth) {
+    const auto& levels = environment.levels;
+    auto above = std::upper_bound(levels.begin() + 1, levels.end(), bandwidth,
+                                  [](float value, const PrefilteredEnvironment::Level& level) {
+                                    return value < level.bandwidth;
+                                  });
+    wide = &*(above - 1);
+    narrow = above == levels.end() ? nullptr : &*above;
+    const float variance = disc_variance(bandwidth);
+    narrow_variance = narrow ? narrow->variance : std::min(0.7f * wide->variance, variance);
+    // Blurring adds to what is seen in proportion to the variance added, where it adds little.
+    share =
+        std::clamp((wide->variance - variance) / (wide->variance - narrow_variance), 0.0f, 1.0f);
+    // Between two deviations of a factor of 2^(1/4) the narrower adds less than that.
+    share -= 0.22f * share * (1 - share);
+  }
+};
+
+Texel eval_round(const PrefilteredEnvironment& environment, const Blend& blend,
+                 const Vector3f& direction) {
+  if (!blend.narrow && blend.share >= 1)
+    return eval_pixels(environment.map, direction, blend.narrow_variance);
+  const CubePoint point = cube_from_direction(direction);
+  const Texel wide = eval_level(*blend.wide, point);
+  return mix(wide,
+             blend.narrow ? eval_level(*blend.narrow, point)
+                          : eval_pixels(environment.map, direction, blend.narrow_variance),
+             blend.share);
+}
+
+/// The bandwidth k for which round lobes of bandwidth `round`, spread by exp(-k sine^2) along an
+/// axis, make the lobe (round, wide): that of planes, 1 / k = 1 / wide - 1 / round, and what the
+/// disc's edge adds (half of what would keep the variance: the form by that, the half by the
+/// error).
+float spread_bandwidth(float round, float wide) {
+  const float n = std::max(round, 2.0f);
+  const float planar = round * wide / (round - wide);
+  const float edge = 1.15f * std::pow(wide, 0.7f) * std::exp(-0.04f * wide * wide);
+  return std::max(planar + edge * (1 + 4 / n) / n, 1e-3f);
+}
+
+Rgb rgb(const Texel& texel) { return texel.head<3>(); }
 
 }  // namespace
 
-PrefilteredEnvironment prefilter_environment(const Image& environment) {
-  std::vector<OctahedralImage> pyramid{octahedral_from_latlong(environment)};
-  while (pyramid.back().resolution > 32) pyramid.push_back(half_resolution(pyramid.back()));
-
-  PrefilteredEnvironment result;
-  // The map itself is the last level: what its texels blur is a lobe of this bandwidth. Filtered
-  // levels stop well before, where they stop paying for their time.
-  constexpr double kLastFiltered = 8192;
-  OctahedralImage& finest = pyramid.front();
-  const double texel = texel_angle(finest.resolution);
-  const double own_bandwidth = 1 / (2 * texel * texel * (1.0 / 12 + 1.0 / 6));
-  for (double bandwidth = 0.25; bandwidth <= std::min(own_bandwidth / 4, kLastFiltered);
-       bandwidth *= 2)
-    result.levels.push_back(filter_level(pyramid, bandwidth));
-  result.levels.push_back(
-      {static_cast<float>(own_bandwidth), finest.resolution, std::move(finest.texels)});
-  return result;
-}
-
 Rgb eval_prefiltered(const PrefilteredEnvironment& environment,
-                     const AnisotropicGaussian<float>& lobe, int max_taps) {
+                     const AnisotropicGaussian<float>& lobe, int max_taps) noexcept {
   const bool x_is_long = lobe.bandwidth_x < lobe.bandwidth_y;
   const float narrow = std::max(x_is_long ? lobe.bandwidth_y : lobe.bandwidth_x, 1e-3f);
   const float wide = std::max(x_is_long ? lobe.bandwidth_x : lobe.bandwidth_y, 1e-3f);
-  const Frame<float> frame = {environment.environment_from_world * lobe.frame.x,
-                              environment.environment_from_world * lobe.frame.y,
-                              environment.environment_from_world * lobe.frame.z};
-  const Vector3f& axis = x_is_long ? frame.x : frame.y;
+  const Vector3f axis = environment.environment_from_world * lobe.frame.z;
 
-  // The lobe is a round one of the narrow bandwidth, spread along the long axis by a Gaussian of
-  // the variance that is missing. Round lobes 1.75 deviations apart still add up smoothly (ripple
-  // 0.3 %).
-  const float deviation = std::sqrt(0.5f / narrow);
-  const float spread = std::sqrt(std::max(0.5f / wide - 0.5f / narrow, 0.0f));
-  if (spread < 0.25f * deviation)
-    return eval_isotropic(environment, frame.z, std::sqrt(narrow * wide));
-  const float reach = std::min(2.75f * spread, 0.999f);
-  const int wanted = 1 + 2 * static_cast<int>(std::ceil(reach / (1.75f * deviation)));
-  const int taps = std::clamp(wanted, 1, std::max(max_taps, 1));
-  if (taps < 3) return eval_isotropic(environment, frame.z, std::sqrt(narrow * wide));
-  const float spacing = 2 * reach / static_cast<float>(taps - 1);
-  // With fewer taps than wanted the round lobes are widened until they meet.
-  const float tap_deviation = std::max(deviation, spacing / 1.75f);
-  const float tap_bandwidth = 0.5f / (tap_deviation * tap_deviation);
+  // The lobe is a round one, spread along the long axis by a Gaussian of the variance that is
+  // missing, over taps of equal angles. Taps 2 d s / sqrt(d^2 + s^2) apart, d and s the deviations
+  // of the round lobe and of the spread, add up smoothly.
+  constexpr float kReach = 3.3f;
+  const float wanted = std::ceil(kReach * std::sqrt(narrow / wide));
+  const float taps = std::min(wanted, static_cast<float>(std::max(max_taps, 1)));
+  // Fewer taps than wanted are widened, not quite until they meet.
+  const float stretch = std::pow(std::max(kReach / taps * std::sqrt(narrow / wide), 1.0f), 0.4f);
+  const float round = narrow / (stretch * stretch);
+  if (round < 1.05f * wide)
+    return rgb(eval_round(environment, {environment, std::sqrt(narrow * wide)}, axis));
+  const Blend blend(environment, round + 0.55f * std::exp(-0.6f * wide));
+  const float falloff = spread_bandwidth(round, wide);
+  const float deviation = std::sqrt(0.5f / falloff);
+  const bool cut = kReach * deviation > kPi<float> / 2;  // by the disc, not by the taps
+  const float reach = cut ? kPi<float> / 2 : kReach * deviation;
+  // What the taps do not reach is 1.1 % of the variance.
+  const float slope = cut ? falloff : falloff / 1.0114f;
+  const Vector3f along =
+      environment.environment_from_world * (x_is_long ? lobe.frame.x : lobe.frame.y);
 
-  Rgb sum = Rgb::Zero();
+  const int count = static_cast<int>(taps);
+  const float spacing = 2 * reach / taps;
+  const bool odd = count % 2 == 1;
+  const auto tap = [&](float sine, float cosine) {
+    return eval_round(environment, blend, cosine * axis + sine * along);
+  };
+  Texel reference = Texel::Zero(), sum = Texel::Zero();
   float weight_sum = 0;
-  for (int i = 0; i < taps; ++i) {
-    const float y = -reach + spacing * static_cast<float>(i);
-    const float z = std::sqrt(1 - y * y);
-    // The Gaussian along the axis, and the share of its slab that lies inside the disc.
-    const float weight =
-        std::exp(-0.5f * (y / spread) * (y / spread)) * std::erf(std::sqrt(narrow) * z);
-    sum += weight * eval_isotropic(environment, y * axis + z * frame.z, tap_bandwidth);
-    weight_sum += weight;
+  if (odd) {
+    reference = tap(0, 1);
+    weight_sum = std::erf(std::sqrt(narrow));
   }
-  return sum / weight_sum;
+  for (int i = 0; i < count / 2; ++i) {
+    const float angle = spacing * (static_cast<float>(i) + (odd ? 1.0f : 0.5f));
+    const float sine = std::sin(angle), cosine = std::cos(angle);
+    // The Gaussian along the axis, and the share of its slab that lies inside the disc.
+    const float edge = std::sqrt(narrow) * cosine;
+    const float weight =
+        std::exp(-slope * sine * sine) * cosine * (edge < 3 ? std::erf(edge) : 1.0f);
+    const Texel right = tap(sine, cosine), left = tap(-sine, cosine);
+    if (weight_sum == 0) reference = right;
+    sum += weight * ((right - reference) + (left - reference));
+    weight_sum += 2 * weight;
+  }
+  return rgb(reference + sum / weight_sum);
 }
 
 }  // namespace burnish

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "burnish/light/environment_map.h"
@@ -7,26 +8,42 @@
 
 namespace burnish {
 
-/// An environment averaged over isotropic lobes of a ladder of bandwidths, on equal-area octahedral
-/// maps.
+/// An environment averaged over isotropic lobes of a ladder of bandwidths, each a factor of sqrt(2)
+/// from the next, on the six faces of a cube (docs/lights.md, "Filtered maps").
 struct PrefilteredEnvironment {
   struct Level {
-    float bandwidth;            ///< ASG bandwidth of the lobe (an SG of twice this sharpness)
-    int resolution;             ///< texels along an edge
-    std::vector<Rgb> radiance;  ///< [resolution^2], mean radiance under the lobe
+    float bandwidth;  ///< ASG bandwidth of the lobe (an SG of twice this sharpness); 0: a cosine
+    float variance;   ///< mean square of a sine from the lobe's axis, in one of two directions
+    int resolution;   ///< texels along the edge of a face
+    /// [6][resolution + 2]^2: coefficients of a quadratic B-spline, with a border of one texel. The
+    /// fourth number is padding.
+    std::vector<Eigen::Array4f> coefficients;
   };
-  std::vector<Level> levels;  ///< by rising bandwidth, a factor of two apart
+  std::vector<Level> levels;  ///< by rising bandwidth
+  Image map;                  ///< what lobes narrower than the last level's blend into
   /// Turns world directions into the environment's frame; may be changed at any time, at no cost.
   Eigen::Matrix3f environment_from_world = Eigen::Matrix3f::Identity();
 };
 
-/// Filters a lat-long environment. About a second for 1024 x 512 pixels on one core.
-PrefilteredEnvironment prefilter_environment(const Image& environment);
+struct PrefilterOptions {
+  /// Of the last level. Memory and time grow with it: 1 kB for each unit of bandwidth, and 3.4
+  /// times that in all. Maps of too few pixels end earlier.
+  float max_bandwidth = 16384;
+  /// Runs body(i) once for every i in [0, count), in any order, on any threads, and returns when
+  /// all are done. Empty: one after the other, on the calling thread.
+  std::function<void(int count, const std::function<void(int)>& body)> parallel_for;
+};
+
+/// Filters a lat-long environment of at least one pixel, finite and >= 0. Throws
+/// std::invalid_argument where there is no pixel.
+PrefilteredEnvironment prefilter_environment(const Image& environment,
+                                             const PrefilterOptions& options = {});
 
 /// Mean radiance of the environment under a lobe: (integral of lobe * L) / (integral of lobe). An
-/// anisotropic lobe is taken as taps along its long axis, at most `max_taps`. A constant
-/// environment gives exactly that constant.
+/// anisotropic lobe is a row of round taps along its long axis: 2.9 sqrt(ratio of the bandwidths),
+/// at most `max_taps`; fewer are wider. A constant environment gives exactly that constant, to the
+/// bit. Errors: docs/lights.md, "Filtered maps".
 Rgb eval_prefiltered(const PrefilteredEnvironment& environment,
-                     const AnisotropicGaussian<float>& lobe, int max_taps);
+                     const AnisotropicGaussian<float>& lobe, int max_taps) noexcept;
 
 }  // namespace burnish
