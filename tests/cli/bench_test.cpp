@@ -53,6 +53,13 @@ TEST(BenchFrame, TableListsWhatIsTheSameAndAlignsWhatDiffers) {
             "n                         7\n");
 }
 
+TEST(BenchFrame, WhatIsMeasuredHasATableOfItsOwn) {
+  const std::vector<BenchRow> rows = {
+      {{"what", "a"}, {"ms", 1}}, {{"what", "b"}, {"rms", 0.5}}, {{"what", "a"}, {"ms", 2}}};
+  EXPECT_EQ(format_tables(rows),
+            format_table({rows[0], rows[2]}) + "\n\n" + format_table({rows[1]}));
+}
+
 TEST(BenchFrame, CsvQuotesAndKeepsAllDigits) {
   const std::vector<BenchRow> rows = {{{"name", "a,b"}, {"value", 0.1}},
                                       {{"name", "say \"x\""}, {"other", 18446744073709551615u}}};
@@ -100,6 +107,33 @@ TEST_P(BenchProgram, WritesTheSameFiguresAsTableJsonAndCsv) {
 
 INSTANTIATE_TEST_SUITE_P(Stations, BenchProgram, testing::Values("bake", "shade"),
                          [](const auto& station) { return std::string(station.param); });
+
+TEST(BenchProgram, LightTellsErrorAndTimeOfFitsAndLookups) {
+  const test::ScratchFolder folder;
+  const test::RunResult result = test::burnish_bench(
+      {"light", "--lobes", "2", "--match", "2", "--directions", "4", "--taps", "1,64", "--repeat",
+       "1", "--warmup", "0", "--json", folder.file("b.json")});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");
+  const json rows = json::parse(test::read_whole_file(folder.file("b.json")))["rows"];
+  std::map<std::string, int> count;
+  for (const json& row : rows) {
+    EXPECT_EQ(row["map"], "studio");
+    ++count[row["what"].get<std::string>()];
+    if (row["what"] == "fit") {
+      EXPECT_GT(row["relative_l2"].get<double>(), 0);
+      EXPECT_LT(row["relative_l2"].get<double>(), 1);
+    } else if (row["what"] == "filter") {
+      // The studio's mean is 1, its brightest lamp 10: whatever is wrong shows as more than that.
+      EXPECT_LT(row["rms"].get<double>(), 0.2) << row;
+      EXPECT_LE(row["rms"].get<double>(), row["worst"].get<double>() + 1e-12);
+      if (row["anisotropy"] == 16) EXPECT_LT(row["rms_64_taps"], row["rms_1_taps"]) << row;
+    }
+  }
+  EXPECT_EQ(count["fit"], 2);  // ASGs and SGs
+  EXPECT_EQ(count["prefilter"], 1);
+  EXPECT_EQ(count["filter"], 8 * 4);
+}
 
 TEST(BenchProgram, SphereTellsErrorAndTimeOfEveryLevelInBothForms) {
   const test::ScratchFolder folder;

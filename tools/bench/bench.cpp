@@ -125,13 +125,27 @@ std::string format_csv(const std::vector<BenchRow>& rows) {
   return text;
 }
 
+std::string format_tables(const std::vector<BenchRow>& rows) {
+  std::vector<std::pair<std::string, std::vector<BenchRow>>> tables;
+  for (const BenchRow& row : rows) {
+    const std::string what = row.value("what", "");
+    auto table = std::find_if(tables.begin(), tables.end(),
+                              [&](const auto& known) { return known.first == what; });
+    if (table == tables.end()) table = tables.insert(tables.end(), {what, {}});
+    table->second.push_back(row);
+  }
+  std::string text;
+  for (const auto& [what, own] : tables) text += (text.empty() ? "" : "\n\n") + format_table(own);
+  return text;
+}
+
 void report_bench(const std::string& station, const std::vector<BenchRow>& rows,
                   const BenchOptions& options, Work& work) {
   const nlohmann::ordered_json machine = machine_record(work.threads());
   work.print(fmt::format("{} on {} ({}, {} threads), {}, commit {}\n\n{}", station,
                          machine["cpu"].get<std::string>(), machine["isa"].get<std::string>(),
                          work.threads(), machine["compiler"].get<std::string>(),
-                         machine["commit"].get<std::string>(), format_table(rows)));
+                         machine["commit"].get<std::string>(), format_tables(rows)));
   write_json(options.json, {{"station", station}, {"machine", machine}, {"rows", rows}});
   if (options.csv.empty()) return;
   std::vector<BenchRow> complete;

@@ -54,6 +54,9 @@ void add_timing(BenchRow& row, const Timing& timing, const BenchOptions& options
 /// leaves it empty.
 std::string format_table(const std::vector<BenchRow>& rows);
 
+/// A table for each value of the column "what", for stations that measure different things.
+std::string format_tables(const std::vector<BenchRow>& rows);
+
 /// The same as RFC 4180 CSV.
 std::string format_csv(const std::vector<BenchRow>& rows);
 

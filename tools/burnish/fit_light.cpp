@@ -10,6 +10,7 @@
 #include "burnish/formats/light_file.h"
 #include "burnish/light/environment_map.h"
 #include "commands.h"
+#include "common/environment_input.h"
 #include "common/interrupt.h"
 #include "common/machine.h"
 #include "common/options.h"

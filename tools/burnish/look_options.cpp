@@ -7,6 +7,7 @@
 #include "burnish/formats/image_file.h"
 #include "burnish/formats/light_file.h"
 #include "burnish/formats/transfer_file.h"
+#include "common/environment_input.h"
 #include "common/interrupt.h"
 #include "common/options.h"
 #include "common/pipeline_options.h"
@@ -92,20 +93,6 @@ void add_look_options(CLI::App& app, LookOptions& options) {
              "PCA terms used, at most those baked; 0 for all");
   add_choice(app, "--specular-from", options.specular_from_map, {{"map", true}, {"lobes", false}},
              "what highlights reflect: the environment map or the fitted lights");
-}
-
-Image load_environment(const std::string& name, Work& work) {
-  if (name == kStudioName) return studio_environment();
-  EnvironmentReport report;
-  Image image = read_environment(name, &report);
-  throw_if_interrupted();
-  for (const std::string& note : report.image.notes) work.print(fmt::format("{}: {}", name, note));
-  const ImageReport& image_report = report.image;
-  if (image_report.nan_values > 0 || image_report.infinite_values > 0)
-    work.print(fmt::format("{}: {} values that are not numbers became 0, {} that are infinite {:g}",
-                           name, image_report.nan_values, image_report.infinite_values,
-                           report.infinity_replacement));
-  return image;
 }
 
 Look load_look(const LookOptions& options, Work& work) {

@@ -29,9 +29,6 @@ struct LookOptions {
   std::string camera;  ///< "ox,oy,oz,tx,ty,tz,fov"; empty: frames the mesh
 };
 
-/// The name that stands for the procedural studio environment in place of a file.
-inline constexpr const char* kStudioName = "studio";
-
 /// Declares all of them; FILE.h5 is the first positional.
 void add_look_options(CLI::App& app, LookOptions& options);
 
@@ -62,8 +59,5 @@ Look load_look(const LookOptions& options, Work& work);
 
 /// The camera of --camera, or one that frames the transfer's vertices.
 Camera look_camera(const LookOptions& options, const Transfer& transfer, float aspect);
-
-/// Reads an environment file, or makes the studio; prints what a user may want to know of it.
-Image load_environment(const std::string& name, Work& work);
 
 }  // namespace burnish::tools
