@@ -124,10 +124,12 @@ TEST(BenchProgram, LightTellsErrorAndTimeOfFitsAndLookups) {
       EXPECT_GT(row["relative_l2"].get<double>(), 0);
       EXPECT_LT(row["relative_l2"].get<double>(), 1);
     } else if (row["what"] == "filter") {
-      // The studio's mean is 1, its brightest lamp 10: whatever is wrong shows as more than that.
+      // A lookup of another lobe, or in another frame, is off by the mean and more.
       EXPECT_LT(row["rms"].get<double>(), 0.2) << row;
       EXPECT_LE(row["rms"].get<double>(), row["worst"].get<double>() + 1e-12);
-      if (row["anisotropy"] == 16) EXPECT_LT(row["rms_64_taps"], row["rms_1_taps"]) << row;
+      if (row["anisotropy"] == 16 && row["bandwidth"] >= 16) {
+        EXPECT_LT(row["rms_64_taps"], row["rms_1_taps"]) << row;
+      }
     }
   }
   EXPECT_EQ(count["fit"], 2);  // ASGs and SGs

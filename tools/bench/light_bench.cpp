@@ -10,6 +10,7 @@
 #include "bench.h"
 #include "burnish/light/prefiltered_environment.h"
 #include "burnish/precompute/fit_light.h"
+#include "burnish/shading/shade.h"
 #include "common/environment_input.h"
 #include "common/interrupt.h"
 #include "common/options.h"
