@@ -40,7 +40,7 @@ PrefilteredEnvironment prefilter_environment(const Image& environment,
                                              const PrefilterOptions& options = {});
 
 /// Mean radiance of the environment under a lobe: (integral of lobe * L) / (integral of lobe). An
-/// anisotropic lobe is a row of round taps along its long axis: 2.9 sqrt(ratio of the bandwidths),
+/// anisotropic lobe is a row of round taps along its long axis: 3.3 sqrt(ratio of the bandwidths),
 /// at most `max_taps`; fewer are wider. A constant environment gives exactly that constant, to the
 /// bit. Errors: docs/lights.md, "Filtered maps".
 Rgb eval_prefiltered(const PrefilteredEnvironment& environment,
