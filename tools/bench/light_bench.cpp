@@ -15,6 +15,7 @@
 #include "common/interrupt.h"
 #include "common/options.h"
 #include "harness/environment_truth.h"
+#include "harness/parallel_prefilter.h"
 #include "stations.h"
 
 namespace burnish::tools {
@@ -159,12 +160,7 @@ void measure_filter(const std::string& map, const Image& image,
 
 BenchRow measure_prefilter(const std::string& map, const Image& image, const Options& options,
                            PrefilteredEnvironment& filtered) {
-  PrefilterOptions parallel;
-  parallel.parallel_for = [](int count, const std::function<void(int)>& body) {
-    tbb::parallel_for(0, count, body);
-  };
-  const Timing timing =
-      measure(options.bench, [&] { filtered = prefilter_environment(image, parallel); });
+  const Timing timing = measure(options.bench, [&] { filtered = prefilter_in_parallel(image); });
   BenchRow row = {{"what", "prefilter"}, {"map", name_of(map)}};
   row["width"] = image.width;
   row["height"] = image.height;

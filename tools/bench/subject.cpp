@@ -7,6 +7,7 @@
 #include "common/interrupt.h"
 #include "common/options.h"
 #include "common/pipeline_options.h"
+#include "harness/parallel_prefilter.h"
 #include "harness/reference_integrator.h"
 #include "harness/studio_environment.h"
 
@@ -40,7 +41,7 @@ StudioLight make_studio_light(const ShadingOptions& options, Work& work) {
   StudioLight studio;
   studio.map = studio_environment();
   studio.lights = prepare_lights(fit_light(studio.map, {}, work.progress()).rig, options);
-  studio.filtered = prefilter_environment(studio.map);
+  studio.filtered = prefilter_in_parallel(studio.map);
   throw_if_interrupted();
   return studio;
 }

@@ -16,6 +16,7 @@
 #include "common/pipeline_options.h"
 #include "common/reports.h"
 #include "common/work.h"
+#include "harness/parallel_prefilter.h"
 #include "harness/procedural_scenes.h"
 #include "harness/reference_integrator.h"
 #include "harness/studio_environment.h"
@@ -114,7 +115,7 @@ void run(const Options& options) {
   const Image studio = studio_environment();
   const LightRig rig = fit_studio(options, studio, work, report);
   const PreparedLights lights = prepare_lights(rig, {});
-  const PrefilteredEnvironment filtered = prefilter_environment(studio);
+  const PrefilteredEnvironment filtered = prefilter_in_parallel(studio);
   const EnvironmentLight environment = {&studio};
   throw_if_interrupted();
 

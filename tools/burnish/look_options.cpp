@@ -12,6 +12,7 @@
 #include "common/options.h"
 #include "common/pipeline_options.h"
 #include "common/program.h"
+#include "harness/parallel_prefilter.h"
 #include "harness/studio_environment.h"
 
 namespace burnish::tools {
@@ -129,7 +130,7 @@ Look load_look(const LookOptions& options, Work& work) {
   look.specular_from_map = options.specular_from_map && has_map;
   if (look.specular_from_map && options.material.has_specular()) {
     const Stopwatch watch;
-    look.filtered = prefilter_environment(look.environment);
+    look.filtered = prefilter_in_parallel(look.environment);
     look.filtered.environment_from_world = look.world_from_environment.transpose();
     look.report["prefilter_s"] = watch.seconds();
   }
