@@ -91,13 +91,13 @@ Frame<double> random_frame(std::mt19937_64& random) {
   return {axes.col(0), axes.col(1), axes.col(2)};
 }
 
-/// A lobe whose wider bandwidth is 1 / anisotropy of the narrower one, in a random frame.
+/// A lobe with a ratio and a geometric mean of its bandwidths, in a random frame.
 AnisotropicGaussian<double> random_lobe(double bandwidth, double anisotropy,
                                         std::mt19937_64& random) {
   AnisotropicGaussian<double> lobe;
   lobe.frame = random_frame(random);
-  lobe.bandwidth_x = bandwidth / anisotropy;
-  lobe.bandwidth_y = bandwidth;
+  lobe.bandwidth_x = bandwidth / std::sqrt(anisotropy);
+  lobe.bandwidth_y = bandwidth * std::sqrt(anisotropy);
   return lobe;
 }
 
@@ -120,7 +120,8 @@ Eigen::Array3d mean_radiance(const Image& image) {
 }
 
 /// Errors of filtered lookups against integrals, relative to the map's mean radiance: root mean
-/// square over directions and channels, and the worst.
+/// square over directions and channels, and the worst; and relative to the lobes' own root mean
+/// square, which says more where a sun outshines the mean.
 void measure_filter(const std::string& map, const Image& image,
                     const PrefilteredEnvironment& filtered, const Options& options,
                     std::vector<BenchRow>& rows) {
@@ -140,16 +141,19 @@ void measure_filter(const std::string& map, const Image& image,
       row["bandwidth"] = bandwidth;
       row["anisotropy"] = anisotropy;
       const auto add = [&](int taps, const std::string& suffix) {
-        double squares = 0, worst = 0;
+        double squares = 0, worst = 0, own_squares = 0;
         for (std::size_t i = 0; i < count; ++i) {
           const Eigen::Array3d found =
               eval_prefiltered(filtered, to_float(lobes[i]), taps).cast<double>();
           const Eigen::Array3d error = ((found - truth[i]) / mean).abs();
           squares += error.square().mean();
+          own_squares += (truth[i] / mean).square().mean();
           worst = std::max(worst, error.maxCoeff());
         }
         row["rms" + suffix] = std::sqrt(squares / static_cast<double>(count));
-        if (suffix.empty()) row["worst"] = worst;
+        if (!suffix.empty()) return;
+        row["worst"] = worst;
+        row["relative_rms"] = std::sqrt(squares / own_squares);
       };
       add(ShadingOptions{}.environment_taps, "");
       if (anisotropy > 1)
