@@ -65,6 +65,15 @@ void check(const Image& environment, const LightFitOptions& options) {
   }
 }
 
+// Of a cell, or of its pixel where the cell is a sliver of one; unless the pixel is coarser than
+// the cells that the sphere is covered with.
+double resolved_solid_angle(const Image& environment, const EnvironmentCell& cell) {
+  constexpr double kBaseWidth = kPi<double> / kBaseRows;
+  const int row = static_cast<int>((cell.row0 + cell.row1) / 2);
+  const double pixel = latlong_pixel_solid_angle(environment, row);
+  return std::max(cell.solid_angle, std::min(pixel, kBaseWidth * kBaseWidth));
+}
+
 LightFitTarget make_target(const Image& environment, const std::vector<EnvironmentCell>& cells,
                            const LightFitOptions& options) {
   const auto count = static_cast<Eigen::Index>(cells.size());
@@ -75,6 +84,7 @@ LightFitTarget make_target(const Image& environment, const std::vector<Environme
   for (Eigen::Index i = 0; i < count; ++i) {
     target.direction.push_back(cell_direction(environment, cells[i]));
     target.variance.push_back(cells[i].solid_angle / 12);
+    target.resolution.push_back(resolved_solid_angle(environment, cells[i]) / 12);
     target.scale[i] = std::sqrt(cells[i].solid_angle);
     radiance.row(i) = cells[i].radiance.matrix().transpose();
   }
@@ -113,7 +123,7 @@ void widen_to_cells(const LightFitTarget& target, std::vector<LobeShape>& shapes
         nearest = i;
       }
     shape.log_bandwidth =
-        shape.log_bandwidth.cwiseMin(std::log(narrowest_bandwidth(target.variance[nearest])));
+        shape.log_bandwidth.cwiseMin(std::log(narrowest_bandwidth(target.resolution[nearest])));
   }
 }
 
@@ -256,7 +266,7 @@ std::vector<EnvironmentLobe> fit_mixture(
                                  [](const auto& cell) { return cell.radiance.sum() == 0; });
   if (black) return {};
   const LightFitTarget target = make_target(environment, cells, options);
-  const double finest = *std::min_element(target.variance.begin(), target.variance.end());
+  const double finest = *std::min_element(target.resolution.begin(), target.resolution.end());
   const LobeLimits limits{
       options.min_bandwidth,
       std::clamp(narrowest_bandwidth(finest), options.min_bandwidth, options.max_bandwidth),

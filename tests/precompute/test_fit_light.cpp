@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <limits>
 #include <random>
+#include <tuple>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -439,6 +440,32 @@ TEST(FitLight, OfASingleBrightPixelHasItsEnergy) {
   EXPECT_NEAR(found[0], truth[0], 1e-5 * truth[0]);
   EXPECT_EQ(found[1], 0);
   EXPECT_NEAR(found[2], truth[2], 1e-5 * truth[2]);
+}
+
+// A lobe of the sun's energy E whose standard deviations are half the pixel's sides or more cannot
+// be far off: |lobe|^2 <= 0.32 E^2 / area, and the mean of a lobe that points into the pixel is at
+// least 0.23 E / area over it (that of one at a corner), so that the squared error is at most
+// 1 - 2 * 0.23 + 0.32 = 0.86. Next to a pole the pixel is a needle, of which a lobe as wide as a
+// square of its area sees less: measured 0.91. A lobe that hid inside it would err by 1.9.
+TEST(FitLight, OfAOnePixelSunIsBetterThanNoLight) {
+  const std::tuple<int, int, int, int> suns[] = {{64, 32, 20, 10},    {64, 32, 63, 31},
+                                                 {80, 40, 51, 27},    {80, 40, 7, 1},
+                                                 {256, 128, 227, 37}, {512, 256, 392, 138}};
+  for (const auto& [width, height, x, y] : suns) {
+    Image image(width, height, Rgb(1, 1, 1));
+    image.at(x, y) *= 4294967296.0f;
+    for (const int lobes : {1, 3}) {
+      if (lobes > 1 && height > 32) continue;  // finer, it becomes a compact source
+      SCOPED_TRACE(testing::Message() << width << " x " << height << ", sun at " << x << ", " << y
+                                      << ", " << lobes << " lobes");
+      LightFitOptions options;  // with cells enough to split down to the pixel
+      options.lobes = lobes;
+      const LightFit fit = fit_light(image, options);
+      EXPECT_LT(fit.error.relative_l2, 0.95);
+      // A tenth of a radian wide, the lobe's flux is shorter than the pixel's by a per cent or so.
+      EXPECT_LT(fit.error.irradiance_relative_l2, 0.02);
+    }
+  }
 }
 
 TEST(FitLight, AcceptsMapsOfAnyShape) {

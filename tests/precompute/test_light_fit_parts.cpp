@@ -170,6 +170,22 @@ TEST(EnvironmentCells, CoverTheSphereOnceWithExactMeans) {
   }
 }
 
+TEST(EnvironmentCells, OfCoarsePixelsAreWholeOnesOrEqualParts) {
+  std::mt19937 random(kSeed);
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  for (const auto& [width, height] : {std::pair{20, 10}, {36, 18}, {37, 19}, {7, 23}}) {
+    const Image image = random_image(width, height, random);
+    for (const EnvironmentCell& cell : environment_cells(image, 12, 600)) {
+      const double high = cell.row1 - cell.row0;
+      EXPECT_NEAR(std::max(high, 1 / high), std::round(std::max(high, 1 / high)), 1e-9);
+      // Parts begin anywhere in a pixel, whole ones at its edge.
+      if (high > 0.75) {
+        EXPECT_EQ(cell.row0, std::round(cell.row0)) << width << " x " << height;
+      }
+    }
+  }
+}
+
 TEST(EnvironmentCells, SplitDownToTheOnlyBrightPixel) {
   Image image(128, 64, Rgb(1, 1, 1));
   image.at(77, 20) = Rgb(100, 50, 25);

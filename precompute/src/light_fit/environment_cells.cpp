@@ -56,6 +56,21 @@ bool split_cell(const Image& environment, const EnvironmentCell& cell, Environme
   return true;
 }
 
+// About `count` equal parts of `pixels` in line. Coarse pixels are not cut into unequal parts:
+// cells split further would be slivers of them, so small that they bound no lobe's width.
+std::vector<double> edges(int pixels, int count) {
+  std::vector<double> result;
+  if (pixels >= 2 * count) {
+    for (int i = 0; i <= count; ++i) result.push_back(double(pixels) * i / count);
+  } else if (pixels >= count) {
+    for (int i = 0; i <= count; ++i) result.push_back(std::round(double(pixels) * i / count));
+  } else {
+    const int parts = (count + pixels - 1) / pixels;  // of each pixel
+    for (int i = 0; i <= pixels * parts; ++i) result.push_back(double(i) / parts);
+  }
+  return result;
+}
+
 }  // namespace
 
 EnvironmentCell make_cell(const Image& environment, double column0, double column1, double row0,
@@ -118,14 +133,13 @@ double cell_irradiance(const Vector3d& direction, double solid_angle, const Vect
 
 std::vector<EnvironmentCell> environment_cells(const Image& environment, int rows, size_t count) {
   std::vector<EnvironmentCell> cells;
-  for (int i = 0; i < rows; ++i) {
-    const double row0 = double(environment.height) * i / rows;
-    const double row1 = double(environment.height) * (i + 1) / rows;
-    const double cosine = std::cos(latitude(environment, (row0 + row1) / 2));
+  const std::vector<double> row = edges(environment.height, rows);
+  for (size_t i = 0; i + 1 < row.size(); ++i) {
+    const double cosine = std::cos(latitude(environment, (row[i] + row[i + 1]) / 2));
     const int columns = std::max(3, static_cast<int>(std::lround(2 * rows * cosine)));
-    for (int j = 0; j < columns; ++j)
-      cells.push_back(make_cell(environment, double(environment.width) * j / columns,
-                                double(environment.width) * (j + 1) / columns, row0, row1));
+    const std::vector<double> column = edges(environment.width, columns);
+    for (size_t j = 0; j + 1 < column.size(); ++j)
+      cells.push_back(make_cell(environment, column[j], column[j + 1], row[i], row[i + 1]));
   }
   const auto less = [&](size_t a, size_t b) {
     return cells[a].spread != cells[b].spread ? cells[a].spread < cells[b].spread : a > b;

@@ -31,7 +31,8 @@ Eigen::Matrix3d cell_vector_irradiance(const Image& environment, const Environme
 /// cosine is spread evenly over its width where it lies across the horizon.
 double cell_irradiance(const Vector3d& direction, double solid_angle, const Vector3d& normal);
 
-/// Covers the sphere with `rows` rows of nearly square cells, then splits the cell of the largest
+/// Covers the sphere with about `rows` rows of nearly square cells, of coarse pixels whole ones or
+/// equal parts, then splits the cell of the largest
 /// spread until there are `count` cells (fewer where every cell is constant).
 std::vector<EnvironmentCell> environment_cells(const Image& environment, int rows, size_t count);
 

@@ -18,7 +18,7 @@ struct Flux {
 };
 using FluxVectors = std::vector<Flux>;
 
-/// Flux of an environment over areas 2 degrees wide.
+/// Flux of an environment over areas about 2 degrees wide.
 FluxVectors environment_flux(const Image& environment);
 
 /// Appends the flux of a lobe, out to five standard deviations (all but 1e-6 of it).

@@ -23,6 +23,7 @@ struct LobeShape {
 struct LightFitTarget {
   std::vector<Vector3d> direction;  ///< of the cells
   std::vector<double> variance;     ///< rad^2, of a cell along either side
+  std::vector<double> resolution;   ///< variance below which nothing is known of a lobe's width
   Eigen::VectorXd scale;            ///< of a cell's radiance
   Eigen::MatrixXd irradiance;   ///< [normals x cells]: from scaled radiance to scaled irradiance
   double irradiance_scale = 1;  ///< of an irradiance
