@@ -1,5 +1,6 @@
 // Environments of every bad or unusual kind, through the real program: a fit, or one clear line.
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -9,6 +10,7 @@
 #include "../formats/exr_examples.h"
 #include "burnish/formats/image_file.h"
 #include "burnish/formats/light_file.h"
+#include "burnish/light/environment_map.h"
 #include "sample_files.h"
 
 namespace burnish::test {
@@ -134,8 +136,37 @@ TEST_F(EnvironmentInput, DialsReachTheFit) {
   write_exr(picture(), file("a.exr"));
   for (const EnvironmentLobe& light : expect_fit(file("a.exr"), {"--isotropic"}).lobes)
     EXPECT_EQ(light.lobe.bandwidth_x, light.lobe.bandwidth_y);
-  // The light of a dark room with one bright patch, less what would spill over its edge.
-  EXPECT_FALSE(expect_fit(file("a.exr"), {"--signed"}).lobes.empty());
+  // A wide lobe with a dark hole in it, which only a negative lobe makes.
+  LightRig truth;
+  truth.lobes.resize(2);
+  truth.lobes[0].lobe = {frame_from_axis(Vector3f(0.6f, 0.64f, 0.48f)), 2, 2, 1};
+  truth.lobes[0].color = Rgb(2, 3, 4);
+  truth.lobes[1].lobe = {frame_from_axis(Vector3f(0.48f, 0.8f, 0.36f)), 20, 60, 1};
+  truth.lobes[1].color = Rgb(-1, -1.5f, -2);
+  Image hole(64, 32);
+  for (int y = 0; y < hole.height; ++y)
+    for (int x = 0; x < hole.width; ++x) {
+      const Vector3d v = direction_from_latlong((x + 0.5) / hole.width, (y + 0.5) / hole.height);
+      hole.at(x, y) = eval_lobes(truth, v.cast<float>()).max(0);
+    }
+  write_exr(hole, file("hole.exr"));
+  const auto least = [](const LightRig& rig) {
+    float color = kInfinity;
+    for (const EnvironmentLobe& light : rig.lobes) color = std::min(color, light.color.minCoeff());
+    return color;
+  };
+  EXPECT_LT(least(expect_fit(file("hole.exr"), {"--signed"})), 0);
+  EXPECT_GE(least(expect_fit(file("hole.exr"))), 0);
+  const auto preview = [&](const char* exposure) {
+    expect_fit(file("a.exr"), {"--preview", file("a.png"), "--exposure", exposure});
+    return read_whole_file(file("a.png"));
+  };
+  EXPECT_NE(preview("0"), preview("1"));
+  const auto first_color = [&](const char* weight) {
+    const LightRig rig = expect_fit(file("a.exr"), {"--irradiance-weight", weight});
+    return rig.lobes.empty() ? 0.0f : rig.lobes[0].color[0];
+  };
+  EXPECT_NE(first_color("0"), first_color("16"));
   // Without any error only a map made of lobes could be; with an error of 1 the first lobe will do.
   EXPECT_EQ(expect_fit(file("a.exr"), {"--target-error", "1"}).lobes.size(), 1u);
   EXPECT_NE(

@@ -115,6 +115,7 @@ TEST(NonnegativeLeastSquares, LeavesOutAColumnThatDependsOnAnother) {
 
 TEST(SignedLeastSquares, MatchesADecompositionAndLeavesOutWhatDepends) {
   std::mt19937 random(kSeed);
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   std::normal_distribution<double> normal;
   int negative_seen = 0;
   for (int trial = 0; trial < 50; ++trial) {
@@ -231,6 +232,7 @@ TEST(Flux, OfANegativeLobeIsThatOfThePositiveOneNegated) {
 
 TEST(ReducedEnvironment, KeepsEnergyAndSquares) {
   std::mt19937 random(kSeed);
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   const auto integrals = [](const Image& image) {
     std::array<double, 2> sum = {};
     for (int y = 0; y < image.height; ++y)
@@ -262,6 +264,7 @@ TEST(ReducedEnvironment, KeepsEnergyAndSquares) {
 
 TEST(ReducedEnvironment, HasTheErrorOfTheWholeMap) {
   std::mt19937 random(kSeed);
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
   const Image image = random_image(64, 32, random);
   LightRig rig;
   EnvironmentLobe light;
