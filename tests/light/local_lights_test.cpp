@@ -276,7 +276,7 @@ RectangleLight random_rectangle(std::mt19937& random, float size) {
 TEST(RectangleLight, MomentsAreTheQuadrature) {
   std::mt19937 random(kSeed);
   SCOPED_TRACE(kSeed);
-  for (const float size : {1e-5f, 1e-3f, 0.1f, 0.5f, 2.0f}) {
+  for (const float size : {1e-9f, 1e-7f, 1e-5f, 1e-3f, 0.1f, 0.5f, 2.0f}) {
     for (int i = 0; i < 10; ++i) {
       const RectangleLight light = random_rectangle(random, size);
       // The plane at a distance at which 48 nodes converge to 1e-7.
@@ -288,6 +288,43 @@ TEST(RectangleLight, MomentsAreTheQuadrature) {
       EXPECT_NEAR(found.solid_angle / truth.solid_angle, 1, 1e-6) << size;
       EXPECT_LT((found.mean - truth.mean).norm() / truth.solid_angle, 1e-6) << size;
       EXPECT_LT((found.spread - truth.spread).norm() / truth.spread.norm(), 1e-5) << size;
+    }
+  }
+}
+
+/// However small: their corners are then the same, or nearly, in double.
+TEST(RectangleLight, TinyOnesArePoints) {
+  const Vector3d normal = Vector3d(0, 0.6, 0.8);
+  for (const float tilt : {1.0f, 1.0f / 32, 1.0f / 4096}) {  // from facing to grazing
+    for (float size = 1e-3f; size > 1e-16f; size /= 8) {
+      RectangleLight light;
+      light.edge_x = Vector3f(size, 0, 0);
+      light.edge_y = Vector3f(0, 0, size / 2);
+      light.radiance = Rgb::Ones();
+      light.two_sided = true;
+      light.center = Vector3f(0.25f, tilt, 1);  // its plane passes the point at this distance
+      const Vector3d center = light.center.cast<double>();
+      const double distance = center.norm();
+      const double solid_angle =
+          double(size) * double(size / 2) * double(tilt) / std::pow(distance, 3);
+      const RectangleMoments found = rectangle_moments(light, Vector3f::Zero());
+      // What a point leaves out is size^2; the closed form just above an extent of 1e-3 loses 1e-16
+      // over size and tilt.
+      const double tolerance = 2 * double(size) * double(size) + 1e-9;
+      EXPECT_NEAR(found.solid_angle / solid_angle, 1, tolerance) << size << " " << tilt;
+      EXPECT_LT((found.mean / solid_angle - center / distance).norm(), tolerance)
+          << size << " " << tilt;
+      const LightAtPoint seen = light_at(light, Vector3f::Zero(), normal.cast<float>());
+      expect_finite(seen);
+      // Half a dozen float roundings.
+      EXPECT_NEAR(irradiance(seen) / (solid_angle * normal.dot(center) / distance), 1,
+                  1e-6 + tolerance)
+          << size << " " << tilt;
+      // Cut in half by the horizon: within the size of nothing.
+      const LightAtPoint cut =
+          light_at(light, Vector3f::Zero(), Vector3f(0, -1, tilt).normalized());
+      EXPECT_LT(cut.reaches ? irradiance(cut) / solid_angle : 0, double(size) + 2e-7)
+          << size << " " << tilt;
     }
   }
 }
@@ -458,6 +495,19 @@ TEST(LocalLights, DomainErrorsNameTheField) {
   sun = {};
   sun.angular_radius_rad = 2;
   EXPECT_EQ(domain_error(sun), "angular_radius_rad is 2.000000, expected 0 to pi / 2");
+  sun = {};
+  sun.angular_radius_rad = 0;  // shades as 1e-4: a radiance of 1e32 / (pi 1e-8)
+  sun.irradiance.x() = 1e32f;
+  EXPECT_EQ(domain_error(sun), "radiance of the irradiance is inf, expected at most 1e+30");
+  sphere = {};
+  sphere.radiance.x() = 2e30f;
+  EXPECT_EQ(domain_error(sphere), "radiance is 2e+30, expected at most 1e+30");
+  EnvironmentLobe lobe{{{}, 2, 2, 1e20f}, Rgb(0, -1e11f, 0)};
+  EXPECT_EQ(domain_error(lobe), "color times amplitude is 1e+31, expected at most 1e+30");
+  lobe.color.y() = -1e10f;
+  EXPECT_EQ(domain_error(lobe), "");
+  lobe.color.y() = NAN;
+  EXPECT_EQ(domain_error(lobe), "color is nan, expected a finite number");
   RectangleLight panel;
   panel.edge_y.setZero();
   EXPECT_EQ(domain_error(panel), "edge_y has length 0.000000, expected a finite number > 0");

@@ -266,6 +266,7 @@ TEST(LightRigOperations, RotateTurnsTheDistantLightsAgainstTheScene) {
 
 TEST(LightRigOperations, RotateLeavesLocalLights) {
   std::mt19937 random(kSeed);
+  SCOPED_TRACE(kSeed);
   LightRig rig = some_lights(random);
   const LightRig before = rig;
   rotate(rig, minimal_rotation<float>(Vector3f::UnitX(), Vector3f::UnitY()));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 #include "burnish/sphere/asg_integral.h"
 #include "burnish/sphere/cap_cosine.h"
@@ -40,12 +41,17 @@ LightAtPoint light_of_cap(const Vector3f& axis, float height, float cosine, cons
 /// the point, the point at the origin.
 struct SeenRectangle {
   Frame<double> frame;
+  Vector3d center;
+  double width = 0, height = 0;     ///< along x and y; corners that are close lose them
   std::array<Vector3d, 4> corners;  ///< clockwise about z
   bool visible = false;
 
+  double extent() const { return std::max(width, height) / center.norm(); }
+
   SeenRectangle(const RectangleLight& light, const Vector3f& position) {
     const Vector3d edge_x = light.edge_x.cast<double>(), edge_y = light.edge_y.cast<double>();
-    const double width = edge_x.norm(), height = edge_y.norm();
+    width = edge_x.norm();
+    height = edge_y.norm();
     frame.x = edge_x / width;
     frame.y = edge_y / height;
     frame.z = frame.x.cross(frame.y);
@@ -60,6 +66,7 @@ struct SeenRectangle {
       z = -z;
     }
     visible = z < 0;
+    center = {x, y, z};
     const double left = x - width / 2, right = x + width / 2;
     const double low = y - height / 2, high = y + height / 2;
     corners = {Vector3d(left, low, z), {left, high, z}, {right, high, z}, {right, low, z}};
@@ -77,7 +84,8 @@ Vector3d arc_normal(const Vector3d& from, const Vector3d& to) {
 /// Lambert's formula (baum1989formfactor) for what of the rectangle is above the horizon of a
 /// normal in its frame.
 double clipped_cosine_integral(const SeenRectangle& seen, const Vector3d& normal) {
-  std::array<Vector3d, 5> polygon;
+  // Five corners at most, but for rounding where the plane of the horizon is that of the rectangle.
+  std::array<Vector3d, 8> polygon;
   size_t count = 0;
   for (size_t i = 0; i < 4; ++i) {
     const Vector3d &from = seen.corners[i], &to = seen.corners[(i + 1) % 4];
@@ -92,14 +100,28 @@ double clipped_cosine_integral(const SeenRectangle& seen, const Vector3d& normal
   return std::clamp(sum / 2, 0.0, kPi<double>);
 }
 
-RectangleMoments moments_in_frame(const SeenRectangle& seen) {
-  // Extent over distance below which closed forms cancel, and the rectangle is as good as flat:
-  // both are off by 1e-6 here.
-  constexpr double kFlat = 1e-3;
+/// Solid angle and mean of a small rectangle by two Gauss nodes along each edge: off by its fourth
+/// power over the distance's.
+void add_nodes(const SeenRectangle& seen, RectangleMoments& moments) {
+  const double node = 0.5 / std::sqrt(3.0);
+  for (const double u : {-node, node}) {
+    for (const double v : {-node, node}) {
+      const Vector3d point = seen.center + Vector3d(u * seen.width, v * seen.height, 0);
+      const double distance = point.norm();
+      const Vector3d direction = point / distance;
+      const double share =
+          seen.width / distance * (seen.height / distance) * std::abs(direction.z()) / 4;
+      moments.solid_angle += share;
+      moments.mean += share * direction;
+    }
+  }
+}
+
+/// The same in closed form, and the sum over the arcs that the spread needs.
+Eigen::Matrix3d add_arcs(const SeenRectangle& seen, RectangleMoments& moments) {
   const std::array<Vector3d, 4>& corners = seen.corners;
   std::array<Vector3d, 4> unit;
   for (size_t i = 0; i < 4; ++i) unit[i] = corners[i].normalized();
-  RectangleMoments moments;
   moments.solid_angle = triangle_solid_angle(unit[0], unit[1], unit[2]) +
                         triangle_solid_angle(unit[2], unit[3], unit[0]);
   Eigen::Matrix3d arcs = Eigen::Matrix3d::Zero();
@@ -111,14 +133,26 @@ RectangleMoments moments_in_frame(const SeenRectangle& seen) {
     arcs += (unit[i] - unit[j]).norm() * (unit[i] + unit[j]).normalized() *
             normal.normalized().transpose();
   }
+  return arcs;
+}
+
+RectangleMoments moments_in_frame(const SeenRectangle& seen) {
+  // Extent over distance below which the closed form of the spread cancels, and the rectangle is as
+  // good as flat: both are off by 1e-6 here. Solid angle and mean lose 1e-16 over it.
+  constexpr double kFlat = 1e-3;
+  RectangleMoments moments;
+  Eigen::Matrix3d arcs = Eigen::Matrix3d::Zero();
+  if (seen.extent() < kFlat)
+    add_nodes(seen, moments);
+  else
+    arcs = add_arcs(seen, moments);
   const Vector3d axis = moments.mean.normalized();
   const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - axis * axis.transpose();
-  const Vector3d center = (corners[0] + corners[2]) / 2;
-  const double distance = center.norm();
-  const Vector3d x = across * (corners[3] - corners[0]), y = across * (corners[1] - corners[0]);
-  if (std::max(x.norm(), y.norm()) < kFlat * distance) {
-    const double share = moments.solid_angle / (12 * distance * distance);
-    moments.spread = share * (x * x.transpose() + y * y.transpose());
+  const double distance = seen.center.norm();
+  const Vector3d x = across.col(0) * (seen.width / distance);
+  const Vector3d y = across.col(1) * (seen.height / distance);
+  if (std::max(x.norm(), y.norm()) < kFlat) {
+    moments.spread = moments.solid_angle / 12 * (x * x.transpose() + y * y.transpose());
   } else {
     moments.spread =
         across * (moments.solid_angle * Eigen::Matrix3d::Identity() + arcs) * across / 3;
@@ -135,12 +169,26 @@ float bandwidth_of_second_moment(double moment) {
 
 bool is_positive(float value) { return std::isfinite(value) && value > 0; }
 
-std::string energy_error(const char* name, const Rgb& value) {
+std::string finite_error(const char* name, const Rgb& value, bool may_be_negative) {
   for (int i = 0; i < 3; ++i) {
-    const std::string error = internal::scalar_error(name, value[i], false);
+    const std::string error = internal::scalar_error(name, value[i], may_be_negative);
     if (!error.empty()) return error;
   }
   return {};
+}
+
+std::string brightness_error(const char* name, const Rgb& radiance) {
+  const float most = radiance.abs().maxCoeff();
+  if (most <= kMaxRadiance) return {};
+  std::array<char, 80> text = {};
+  std::snprintf(text.data(), text.size(), " is %g, expected at most %g", double(most),
+                double(kMaxRadiance));
+  return name + std::string(text.data());
+}
+
+std::string radiance_error(const Rgb& radiance) {
+  const std::string error = finite_error("radiance", radiance, false);
+  return error.empty() ? brightness_error("radiance", radiance) : error;
 }
 
 std::string finite_error(const char* name, const Vector3f& value) {
@@ -224,18 +272,28 @@ LightAtPoint light_at(const RectangleLight& light, const Vector3f& position,
       bandwidth_of_second_moment((mean_square + radius) / moments.solid_angle);
   result.lobe.bandwidth_y =
       bandwidth_of_second_moment(std::max(mean_square - radius, 0.0) / moments.solid_angle);
-  const double cosine = above == 4 ? std::max(local_normal.dot(moments.mean), 0.0)
-                                   : clipped_cosine_integral(seen, local_normal);
+  // What the horizon cuts off a tiny light is within its extent of nothing; there, edges cancel.
+  const double cosine = above == 4 || seen.extent() < 1e-7
+                            ? std::max(local_normal.dot(moments.mean), 0.0)
+                            : clipped_cosine_integral(seen, local_normal);
   set_energy(result, light.radiance, static_cast<float>(moments.solid_angle),
              static_cast<float>(cosine));
   return result;
+}
+
+std::string domain_error(const EnvironmentLobe& light) {
+  std::string error = domain_error(light.lobe);
+  if (error.empty()) error = finite_error("color", light.color, true);
+  return error.empty()
+             ? brightness_error("color times amplitude", light.color * light.lobe.amplitude)
+             : error;
 }
 
 std::string domain_error(const SphereLight& light) {
   std::string error = finite_error("center", light.center);
   if (error.empty() && !is_positive(light.radius))
     error = "radius is " + std::to_string(light.radius) + ", expected a finite number > 0";
-  return error.empty() ? energy_error("radiance", light.radiance) : error;
+  return error.empty() ? radiance_error(light.radiance) : error;
 }
 
 std::string domain_error(const DirectionalLight& light) {
@@ -244,7 +302,10 @@ std::string domain_error(const DirectionalLight& light) {
       !(light.angular_radius_rad >= 0 && light.angular_radius_rad <= kPi<float> / 2))
     error = "angular_radius_rad is " + std::to_string(light.angular_radius_rad) +
             ", expected 0 to pi / 2";
-  return error.empty() ? energy_error("irradiance", light.irradiance) : error;
+  if (error.empty()) error = finite_error("irradiance", light.irradiance, false);
+  if (!error.empty()) return error;
+  return brightness_error("radiance of the irradiance",
+                          radiance_of_disc(light.irradiance, shaded_angular_radius(light)));
 }
 
 std::string domain_error(const RectangleLight& light) {
@@ -257,7 +318,7 @@ std::string domain_error(const RectangleLight& light) {
   const Vector3d y = light.edge_y.cast<double>().stableNormalized();
   if (error.empty() && !(std::abs(x.dot(y)) <= kAxisTolerance))
     error = "edge_x and edge_y have cosine " + std::to_string(x.dot(y)) + ", expected 0";
-  return error.empty() ? energy_error("radiance", light.radiance) : error;
+  return error.empty() ? radiance_error(light.radiance) : error;
 }
 
 }  // namespace burnish

@@ -263,7 +263,7 @@ PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options
   prepared.spheres = lit(rig.spheres, "sphere light", &SphereLight::radiance);
   prepared.rectangles = lit(rig.rectangles, "rectangle light", &RectangleLight::radiance);
   for (size_t i = 0; i < rig.lobes.size(); ++i)
-    require(domain_error(rig.lobes[i].lobe), "light lobe", i);
+    require(domain_error(rig.lobes[i]), "light lobe", i);
   for (const EnvironmentLobe& light : split_wide_lobes(rig.lobes, options.split_bandwidth)) {
     PreparedLobe lobe;
     lobe.lobe = light.lobe;

@@ -57,12 +57,18 @@ struct RectangleMoments {
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
 };
 
-/// Exact (`spread` to 1e-5), from any distance. Based on: arvo1995moments.
+/// Exact to 1e-9 of what it would be if the rectangle faced the point (`spread` to 1e-5), from any
+/// distance and of any size. Based on: arvo1995moments.
 RectangleMoments rectangle_moments(const RectangleLight& light, const Vector3f& position) noexcept;
 
+/// Largest radiance of a light, W sr^-1 m^-2: its products with solid angles and reflectances, and
+/// sums of many lights, stay in a float's range.
+inline constexpr float kMaxRadiance = 1e30f;
+
 /// What is wrong with a light, as "radius is -1.000000, expected a finite number > 0"; empty when
-/// nothing is.
+/// nothing is. None may be brighter than kMaxRadiance; a directional light as it is shaded.
 /// @{
+std::string domain_error(const EnvironmentLobe& light);
 std::string domain_error(const SphereLight& light);
 std::string domain_error(const DirectionalLight& light);
 std::string domain_error(const RectangleLight& light);
