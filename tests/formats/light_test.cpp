@@ -234,6 +234,12 @@ TEST(LightFile, RejectsBadValuesByPathAndLine) {
       {"[0, 0, 1]],", "[0, 0.1, 1]],", "line 4, /world_from_environment:", "not a rotation"},
       {"[0, 0, 1]],", "[0, 0, 7e200]],", "line 5, /world_from_environment/2/2:", "7e+200"},
       {"\"lobes\": [", "\"lobes\": [ 5, ", "line 6, /lobes/0:", "is number, expected an object"},
+      {"\"scale\": 2", "\"scale\": 1e30",
+       "line 20, /scale:", "1e+30, with which of /lobes/0 the color"},
+      {"[1, 2, 3]", "[1e25, 2, -1e30]",
+       "line 20, /scale:", "2, with which of /lobes/0 the color times amplitude is 2e+30"},
+      {"[4, 5, 6]", "[4, 1e30, 6]",
+       "line 20, /scale:", "of /directionals/0 the radiance of the irradiance is 1.0"},
       {"\"spheres\": [ {", "\"spheres\": [ {\"a/b~\\n\": 1, ",
        "line 13, /spheres/0/a~1b~0?:", "unknown field"},
   };
@@ -284,6 +290,70 @@ TEST(LightFile, TakesPowersRadiancesAndIrradiances) {
   EXPECT_NEAR(bulb.rig.spheres.at(0).radiance.x(), 3 / (kPi<double> * kPi<double>), 1e-6);
 }
 
+/// A light that reads is one that shades.
+TEST(LightFile, LightsOutOfRangeAreRefused) {
+  const auto with_scale = [](const char* value, const std::string& lights) {
+    return parse_error(R"({"format": "burnish lights", "format_version": 2, "scale": )" +
+                       std::string(value) + ",\n" + lights + "}");
+  };
+  const auto sphere = [](const std::string& radiance) {
+    return R"("spheres": [{"center": [0, 0, 0], "radius": 1, "radiance": [)" + radiance + "]}]";
+  };
+  EXPECT_EQ(with_scale("1e30", sphere("1, 0, 0.5")), "");
+  EXPECT_EQ(with_scale("1e-20", sphere("1e35, 0, 0")), "");
+  EXPECT_EQ(with_scale("1e30", sphere("1e20, 0, 0")),
+            kName +
+                ": line 1, /scale: 1e+30, with which of /spheres/0 the radiance is inf, expected "
+                "a finite number >= 0");
+  EXPECT_EQ(with_scale("1", sphere("1e35, 0, 0")),
+            kName + ": line 2, /spheres/0: radiance is 1e+35, expected at most 1e+30");
+  // A disc of radius 0 shades as one of 1e-4.
+  EXPECT_EQ(with_scale("1", R"("directionals": [{"toward": [0, 0, 1], "angular_radius_rad": 0,
+  "irradiance": [0, 1e32, 0]}])"),
+            kName +
+                ": line 2, /directionals/0: radiance of the irradiance is inf, expected at most "
+                "1e+30");
+  EXPECT_EQ(with_scale("1", R"("directionals": [{"toward": [0, 0, 1], "angular_radius_rad": 0,
+  "irradiance": [0, 1e22, 0]}])"),
+            "");
+}
+
+/// Frames, axes and rotations that are off by just what is kept as written make sound lights.
+TEST(LightFile, RoundingThatIsKeptAsWrittenIsSound) {
+  constexpr unsigned kSeed = 23;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  const auto number = [](double value) { return std::to_string(1e9 * value) + "e-9"; };
+  const auto triple = [&](double x, double y, double z) {
+    return "[" + number(x) + ", " + number(y) + ", " + number(z) + "]";
+  };
+  for (int i = 0; i < 300; ++i) {
+    const auto off = [&](double value, double error) {
+      return value + (uniform(random) < 0 ? -error : error);
+    };
+    // The rotation is judged by its square.
+    const auto turned = [&] { return off(1, 1.9e-6); };
+    const auto near = [&](double value) { return off(value, 3.9e-6); };
+    LightFile file = parse_lights(
+        R"({"format": "burnish lights", "format_version": 2, "world_from_environment": [)" +
+            triple(turned(), 0, 0) + "," + triple(0, turned(), 0) + "," + triple(0, 0, turned()) +
+            R"(], "lobes": [{"bandwidth_x": 2, "bandwidth_y": 1, "color": [1, 1, 1], "axis": )" +
+            triple(near(0), 0, near(1)) + R"(, "tangent": )" + triple(near(1), 0, 0) +
+            R"(}], "directionals": [{"angular_radius_rad": 0.1, "irradiance": [1, 1, 1],
+             "toward": )" +
+            triple(0, 0, near(1)) + "}]}",
+        kName);
+    // As shading may turn them further.
+    const Eigen::Matrix3f turn =
+        Eigen::AngleAxisf(float(i), random_vector(random).normalized()).toRotationMatrix();
+    file.world_from_environment = turn * file.world_from_environment;
+    const LightRig rig = world_lights(file);
+    EXPECT_EQ(domain_error(rig.lobes.at(0)), "");
+    EXPECT_EQ(domain_error(rig.directionals.at(0)), "");
+  }
+}
+
 TEST(LightFile, WorldLightsAreTurnedAndScaled) {
   LightFile file = random_lights(3, 2, 2);
   file.scale = 4;
@@ -328,6 +398,11 @@ TEST(LightFile, VersionOneStaysReadable) {
   EXPECT_NE(parse_error(R"({"format": "burnish lights", "format_version": 1, "spheres":
   [{"center": [0, 0, 0], "radius": 1, "power": [1, 1, 1]}]})")
                 .find("power: unknown field"),
+            std::string::npos);
+  EXPECT_NE(parse_error(R"({"format": "burnish lights", "format_version": 1, "lobes":
+  [{"axis": [0, 0, 1], "tangent": [1, 0, 0], "bandwidth_x": 1, "bandwidth_y": 1,
+    "color": [1, -1, 1]}]})")
+                .find("line 3, /lobes/0/color/1: -1, expected 0"),
             std::string::npos);
 }
 

@@ -23,7 +23,7 @@ struct LightFile {
   LightRig rig;                                      ///< not turned, not scaled
 };
 
-/// The rig of a file, turned and scaled as the file says.
+/// The rig of a file, turned and scaled as the file says; frames exactly orthonormal.
 LightRig world_lights(const LightFile& file);
 
 /// Reads a JSON light file (formats/FORMAT.md) of this or an earlier version. Unknown fields and

@@ -1,5 +1,3 @@
-#include "burnish/formats/light_file.h"
-
 #include <cmath>
 #include <limits>
 
@@ -8,14 +6,15 @@
 #include <fmt/format.h>
 
 #include "burnish/formats/error.h"
-#include "burnish/formats/output_file.h"
+#include "burnish/formats/light_file.h"
+#include "burnish/light/local_lights.h"
 #include "file_bytes.h"
 #include "json_text.h"
+#include "light_format.h"
 
 namespace burnish {
 namespace {
 
-constexpr const char* kLightFormatName = "burnish lights";
 constexpr float kFrameTolerance = 1e-3f;
 constexpr float kRounding = 4e-6f;  // some 30 roundings of a float near 1
 constexpr float kMax = std::numeric_limits<float>::max();
@@ -43,27 +42,31 @@ Frame<float> read_frame(const JsonPlace& axis_place, const JsonPlace& tangent_pl
         fmt::format("cosine {} with the axis, expected 0 within {}", cosine, kFrameTolerance));
   const auto is_rounding = [](float error) { return std::abs(error) <= kRounding; };
   if (is_rounding(cosine) && is_rounding(axis.norm() - 1) && is_rounding(tangent.norm() - 1))
-    return {tangent, axis.cross(tangent), axis};
+    return {tangent, axis.cross(tangent).normalized(), axis};
   return frame_from_normal_tangent<float>(axis.normalized(), tangent);
 }
 
-EnvironmentLobe read_lobe(const JsonPlace& place, int /*version*/) {
+EnvironmentLobe read_lobe(const JsonPlace& place, int version) {
   place.expect_fields({"axis", "tangent", "bandwidth_x", "bandwidth_y", "color"});
   EnvironmentLobe light;
   light.lobe.frame = read_frame(place.at("axis"), place.at("tangent"));
   light.lobe.bandwidth_x = place.at("bandwidth_x").float_in(0, kMax);
   light.lobe.bandwidth_y = place.at("bandwidth_y").float_in(0, kMax);
-  light.color = read_vector(place.at("color")).array();
+  light.color = read_vector(place.at("color"), version == 1 ? 0 : -kMax).array();
   return light;
 }
 
 Rgb read_color(const JsonPlace& place) { return read_vector(place, 0).array(); }
 
+void expect_one_of(const JsonPlace& place, const char* first, const char* second) {
+  if (place.has(first) == place.has(second))
+    place.fail(fmt::format("expected one of the fields '{}' and '{}'", first, second));
+}
+
 /// A light's radiance: as the file has it, or from the field `other`, of which one must be there.
 template <class Convert>
 Rgb read_radiance(const JsonPlace& place, const char* other, const Convert& radiance_of) {
-  if (place.has("radiance") == place.has(other))
-    place.fail(fmt::format("expected one of the fields 'radiance' and '{}'", other));
+  expect_one_of(place, "radiance", other);
   if (place.has("radiance")) return read_color(place.at("radiance"));
   const JsonPlace given = place.at(other);
   const Rgb radiance = radiance_of(read_color(given));
@@ -84,14 +87,13 @@ SphereLight read_sphere(const JsonPlace& place, int version) {
   return light;
 }
 
-DirectionalLight read_directional(const JsonPlace& place, int /*version*/) {
+DirectionalLight read_directional(const JsonPlace& place) {
   place.expect_fields({"toward", "angular_radius_rad", "irradiance", "radiance"});
   DirectionalLight light;
   light.toward = read_unit(place.at("toward"));
   if (std::abs(light.toward.norm() - 1) > kRounding) light.toward.normalize();
   light.angular_radius_rad = place.at("angular_radius_rad").float_in(0, kPi<float> / 2);
-  if (place.has("radiance") == place.has("irradiance"))
-    place.fail("expected one of the fields 'radiance' and 'irradiance'");
+  expect_one_of(place, "radiance", "irradiance");
   if (place.has("irradiance")) {
     light.irradiance = read_color(place.at("irradiance"));
     return light;
@@ -114,7 +116,7 @@ Vector3f read_edge(const JsonPlace& place) {
   return edge;
 }
 
-RectangleLight read_rectangle(const JsonPlace& place, int /*version*/) {
+RectangleLight read_rectangle(const JsonPlace& place) {
   place.expect_fields({"center", "edge_x", "edge_y", "two_sided", "radiance", "power"});
   RectangleLight light;
   light.center = read_vector(place.at("center"));
@@ -134,15 +136,27 @@ RectangleLight read_rectangle(const JsonPlace& place, int /*version*/) {
   return light;
 }
 
-template <class Light>
-std::vector<Light> read_list(const JsonPlace& root, const char* name, int version,
-                             Light (*read)(const JsonPlace&, int)) {
-  std::vector<Light> lights;
+template <class Read>
+auto read_list(const JsonPlace& root, const char* name, const Read& read) {
+  std::vector<decltype(read(root))> lights;
   if (!root.has(name)) return lights;
   const JsonPlace list = root.at(name);
   list.expect_array();
-  for (size_t i = 0; i < list.value.size(); ++i) lights.push_back(read(list.at(i), version));
+  for (size_t i = 0; i < list.value.size(); ++i) lights.push_back(read(list.at(i)));
   return lights;
+}
+
+/// Fails for lights that cannot be shaded with, turned and scaled as the file says.
+template <class Light>
+void expect_sound(const JsonPlace& root, const char* list, const std::vector<Light>& world,
+                  float scale) {
+  for (size_t i = 0; i < world.size(); ++i) {
+    const std::string error = domain_error(world[i]);
+    if (error.empty()) continue;
+    if (scale > 1)
+      root.at("scale").fail(fmt::format("{}, with which of /{}/{} the {}", scale, list, i, error));
+    root.at(list).at(i).fail(error);
+  }
 }
 
 std::optional<double> read_fit_error(const JsonPlace& root, const char* name) {
@@ -160,13 +174,14 @@ Eigen::Matrix3f read_rotation(const JsonPlace& place) {
   for (int row = 0; row < 3; ++row)
     matrix.row(row) =
         read_vector(place.at(static_cast<size_t>(row)), -1 - kFrameTolerance).transpose();
-  const Eigen::Matrix3d product = (matrix.transpose() * matrix).cast<double>();
+  const Eigen::Matrix3d exact = matrix.cast<double>();
+  const Eigen::Matrix3d product = exact.transpose() * exact;
   const double error = (product - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
   if (!(error <= 2 * kFrameTolerance) || matrix.determinant() < 0)
     place.fail("not a rotation: expected orthonormal rows and determinant 1");
   if (error <= kRounding) return matrix;  // rounding of a rotation: kept as written
-  const Eigen::JacobiSVD<Eigen::Matrix3f> svd(matrix, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return svd.matrixU() * svd.matrixV().transpose();
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(exact, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  return (svd.matrixU() * svd.matrixV().transpose()).cast<float>();
 }
 
 int read_version(const JsonPlace& root) {
@@ -181,49 +196,6 @@ int read_version(const JsonPlace& root) {
                 fmt::format("light format version {}, this build reads up to {}", version.number(),
                             kLightFormatVersion));
   return static_cast<int>(version.number());
-}
-
-template <class Vector>
-std::string format_vector(const Vector& v) {
-  return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
-}
-
-std::string format_lobe(const EnvironmentLobe& light) {
-  const AnisotropicGaussian<float>& lobe = light.lobe;
-  return fmt::format(
-      "    {{\"axis\": {}, \"tangent\": {}, \"bandwidth_x\": {}, \"bandwidth_y\": {}, "
-      "\"color\": {}}}",
-      format_vector(lobe.frame.z), format_vector(lobe.frame.x), lobe.bandwidth_x, lobe.bandwidth_y,
-      format_vector(Rgb(light.color * lobe.amplitude)));
-}
-
-std::string format_sphere(const SphereLight& light) {
-  return fmt::format("    {{\"center\": {}, \"radius\": {}, \"radiance\": {}}}",
-                     format_vector(light.center), light.radius, format_vector(light.radiance));
-}
-
-std::string format_directional(const DirectionalLight& light) {
-  return fmt::format("    {{\"toward\": {}, \"angular_radius_rad\": {}, \"irradiance\": {}}}",
-                     format_vector(light.toward), light.angular_radius_rad,
-                     format_vector(light.irradiance));
-}
-
-std::string format_rectangle(const RectangleLight& light) {
-  return fmt::format(
-      "    {{\"center\": {}, \"edge_x\": {}, \"edge_y\": {}, \"two_sided\": {}, \"radiance\": {}}}",
-      format_vector(light.center), format_vector(light.edge_x), format_vector(light.edge_y),
-      light.two_sided, format_vector(light.radiance));
-}
-
-template <class Lights, class Format>
-std::string format_list(const char* name, const Lights& lights, Format format) {
-  std::string text = fmt::format("  \"{}\": [", name);
-  const char* separator = "\n";
-  for (const auto& light : lights) {
-    text += separator + format(light);
-    separator = ",\n";
-  }
-  return text + (lights.empty() ? "]" : "\n  ]");
 }
 
 }  // namespace
@@ -247,57 +219,33 @@ LightFile parse_lights(std::string_view json, const std::string& subject) {
   if (root.has("world_from_environment"))
     file.world_from_environment = read_rotation(root.at("world_from_environment"));
   if (root.has("scale")) file.scale = root.at("scale").float_in(0, kMax);
-  file.rig.lobes = read_list(root, "lobes", version, read_lobe);
-  file.rig.directionals = read_list(root, "directionals", version, read_directional);
-  file.rig.spheres = read_list(root, "spheres", version, read_sphere);
-  file.rig.rectangles = read_list(root, "rectangles", version, read_rectangle);
+  file.rig.lobes =
+      read_list(root, "lobes", [&](const JsonPlace& place) { return read_lobe(place, version); });
+  file.rig.directionals = read_list(root, "directionals", read_directional);
+  file.rig.spheres = read_list(root, "spheres",
+                               [&](const JsonPlace& place) { return read_sphere(place, version); });
+  file.rig.rectangles = read_list(root, "rectangles", read_rectangle);
+  const LightRig world = world_lights(file);
+  expect_sound(root, "lobes", world.lobes, file.scale);
+  expect_sound(root, "directionals", world.directionals, file.scale);
+  expect_sound(root, "spheres", world.spheres, file.scale);
+  expect_sound(root, "rectangles", world.rectangles, file.scale);
   return file;
-}
-
-std::string format_lights(const LightFile& lights, const std::string& subject) {
-  const Eigen::Matrix3f& rotation = lights.world_from_environment;
-  std::string text = "{\n";
-  text += fmt::format("  \"format\": \"{}\",\n", kLightFormatName);
-  text += fmt::format("  \"format_version\": {},\n", kLightFormatVersion);
-  text += fmt::format("  \"name\": {},\n", json_string(lights.name));
-  text += fmt::format("  \"source\": {},\n", json_string(lights.source));
-  if (lights.fit_relative_l2)
-    text += fmt::format("  \"fit_relative_l2\": {},\n", *lights.fit_relative_l2);
-  if (lights.fit_irradiance_relative_l2)
-    text +=
-        fmt::format("  \"fit_irradiance_relative_l2\": {},\n", *lights.fit_irradiance_relative_l2);
-  text +=
-      fmt::format("  \"world_from_environment\": [{}, {}, {}],\n", format_vector(rotation.row(0)),
-                  format_vector(rotation.row(1)), format_vector(rotation.row(2)));
-  text += fmt::format("  \"scale\": {},\n", lights.scale);
-  text += format_list("lobes", lights.rig.lobes, format_lobe) + ",\n";
-  text += format_list("directionals", lights.rig.directionals, format_directional) + ",\n";
-  text += format_list("spheres", lights.rig.spheres, format_sphere) + ",\n";
-  text += format_list("rectangles", lights.rig.rectangles, format_rectangle) + "\n}\n";
-  try {
-    parse_lights(text, subject);  // what we could not read back is not written
-  } catch (const Error& error) {
-    std::string message = error.what();
-    message.erase(0, std::min(message.size(), subject.size() + 2));
-    throw Error(ErrorKind::output, subject, "these lights cannot be stored: " + message);
-  }
-  return text;
 }
 
 LightRig world_lights(const LightFile& file) {
   LightRig rig = file.rig;
   rotate(rig, file.world_from_environment);
+  // The rounding that is kept in the file's frames and in its rotation may add up beyond what
+  // shading takes for unit.
+  for (EnvironmentLobe& light : rig.lobes)
+    light.lobe.frame =
+        frame_from_normal_tangent<float>(light.lobe.frame.z.normalized(), light.lobe.frame.x);
+  for (DirectionalLight& light : rig.directionals) light.toward.normalize();
   scale(rig, file.scale);
   return rig;
 }
 
 LightFile read_lights(const std::string& path) { return parse_lights(read_file_bytes(path), path); }
-
-void write_lights(const LightFile& lights, const std::string& path) {
-  const std::string text = format_lights(lights, path);
-  OutputFile file(path);
-  file.write(text);
-  file.commit();
-}
 
 }  // namespace burnish
