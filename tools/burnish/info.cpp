@@ -157,11 +157,12 @@ Json lights_info(const std::string& path) {
   const auto error = [](const auto& value) { return value ? Json(*value) : Json(); };
   info["fit_relative_l2"] = error(file.fit_relative_l2);
   info["fit_irradiance_relative_l2"] = error(file.fit_irradiance_relative_l2);
-  // What the lobes give a white diffuse surface in the open, averaged over all normals, is a
-  // quarter of this.
+  // Of the lobes alone, scaled. What they give a white diffuse surface in the open, averaged over
+  // all normals, is a quarter of this.
   Rgb power = Rgb::Zero();
-  for (const EnvironmentLobe& light : file.rig.lobes) power += light.color * integral(light.lobe);
-  info["radiance_integral"] = vector_json(power.matrix());
+  for (const EnvironmentLobe& light : world_lights(file).lobes)
+    power += light.color * integral(light.lobe);
+  info["lobes_radiance_integral"] = vector_json(power.matrix());
   return info;
 }
 

@@ -1,12 +1,15 @@
 #include "look_options.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
+#include "burnish/formats/error.h"
 #include "burnish/formats/image_file.h"
 #include "burnish/formats/light_file.h"
 #include "burnish/formats/transfer_file.h"
+#include "burnish/light/local_lights.h"
 #include "common/environment_input.h"
 #include "common/interrupt.h"
 #include "common/options.h"
@@ -64,6 +67,28 @@ LightFile load_lights(const LookOptions& options, const Image& environment, Work
   return file;
 }
 
+/// Lights of a file are sound as read; those fitted to a map of extreme values may be too bright.
+PreparedLights checked_lights(const LightRig& rig, const LookOptions& options) {
+  try {
+    return prepare_lights(rig, options.shading);
+  } catch (const std::invalid_argument& error) {
+    throw Error(ErrorKind::input, options.lights.empty() ? options.environment : options.lights,
+                error.what());
+  }
+}
+
+void scale_map(Image& environment, float factor, const LookOptions& options) {
+  float most = 0;
+  for (Rgb& pixel : environment.pixels) {
+    pixel *= factor;
+    most = std::max(most, pixel.maxCoeff());
+  }
+  if (most > kMaxRadiance)
+    throw Error(ErrorKind::input, options.environment,
+                fmt::format("a radiance of {} with a scale of {}, expected at most {}", most,
+                            factor, kMaxRadiance));
+}
+
 }  // namespace
 
 void add_look_options(CLI::App& app, LookOptions& options) {
@@ -112,15 +137,13 @@ Look load_look(const LookOptions& options, Work& work) {
   throw_if_interrupted();
   // A light file's own rotation and scale change lights and map alike, so that they stay the same
   // light.
-  look.world_from_environment =
+  lights.world_from_environment =
       world_from_environment(up_direction(options.up), options.rotate_deg) *
       lights.world_from_environment;
-  look.rig = std::move(lights.rig);
-  rotate(look.rig, look.world_from_environment);
-  scale(look.rig, lights.scale);
-  if (lights.scale != 1)
-    for (Rgb& pixel : look.environment.pixels) pixel *= lights.scale;
-  look.lights = prepare_lights(look.rig, options.shading);
+  look.world_from_environment = lights.world_from_environment;
+  look.rig = world_lights(lights);
+  look.lights = checked_lights(look.rig, options);
+  scale_map(look.environment, lights.scale, options);
   look.report["lobes"] = look.rig.lobes.size();
   look.report["directional_lights"] = look.rig.directionals.size();
   look.report["sphere_lights"] = look.rig.spheres.size();
