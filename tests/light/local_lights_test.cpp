@@ -8,6 +8,7 @@
 #include "burnish/sphere/cap_cosine.h"
 #include "burnish/sphere/lobe_moments.h"
 #include "support/quadrature.h"
+#include "support/rectangle_nodes.h"
 
 namespace burnish {
 namespace {
@@ -230,21 +231,7 @@ struct RectangleTruth {
 
 RectangleTruth rectangle_truth(const RectangleLight& light, const Vector3d& position,
                                const Vector3d& normal, int steps) {
-  const Vector3d edge_x = light.edge_x.cast<double>(), edge_y = light.edge_y.cast<double>();
-  const Vector3d area = edge_x.cross(edge_y);
-  const auto rule = test::gauss_legendre(steps, -0.5, 0.5);
-  std::vector<test::Node> nodes;
-  for (const auto& [u, weight_u] : rule) {
-    for (const auto& [v, weight_v] : rule) {
-      const Vector3d offset = light.center.cast<double>() + u * edge_x + v * edge_y - position;
-      const double distance = offset.norm();
-      const Vector3d direction = offset / distance;
-      const double facing = -area.dot(direction) / (distance * distance);
-      nodes.push_back(
-          {direction,
-           weight_u * weight_v * (light.two_sided ? std::abs(facing) : std::max(facing, 0.0))});
-    }
-  }
+  const std::vector<test::Node> nodes = test::rectangle_nodes(light, position, steps);
   RectangleTruth sum;
   for (const auto& [direction, weight] : nodes) {
     sum.solid_angle += weight;

@@ -118,9 +118,10 @@ TEST_P(SunIn, AnyPlaceIsSplitFromTheSky) {
   // lobes do when there is no sun (not the same: its place was filled, the cells differ).
   const LightFitError alone = fit_light(sky, quick(6)).error, of_sky = measure_light_fit(sky, rest);
   EXPECT_LT(of_sky.relative_l2, 1.2 * alone.relative_l2);
-  // Six lobes leave 0.4 % of the sky alone, and 0.5 to 0.8 % here; at the pole 1.24 %, another
+  // Six lobes leave 0.4 % of the sky alone, and 0.5 to 0.8 % here; at the zenith 1.24 %, another
   // local minimum, whose last digits rounding moves: a fifth more than that.
-  EXPECT_LT(of_sky.irradiance_relative_l2, 0.015);
+  const bool at_zenith = sun_axis == Vector3d::UnitY();
+  EXPECT_LT(of_sky.irradiance_relative_l2, at_zenith ? 0.015 : 0.01);
 }
 
 // Somewhere, at the poles, beside one, across the seam.

@@ -6,6 +6,7 @@
 #include "burnish/shading/shade.h"
 #include "burnish/sphere/octahedral_map.h"
 #include "support/quadrature.h"
+#include "support/rectangle_nodes.h"
 
 namespace burnish {
 namespace {
@@ -44,24 +45,6 @@ std::vector<test::Node> cap_nodes(const Vector3d& axis, double radius, int steps
       const double phi = kPi<double> * (i + 0.5) / steps, sine = std::sqrt(1 - z * z);
       nodes.push_back({frame.to_world({sine * std::cos(phi), sine * std::sin(phi), z}),
                        weight * kPi<double> / steps});
-    }
-  }
-  return nodes;
-}
-
-/// Directions of a rectangle as seen from the origin, with weights that sum to its solid angle.
-std::vector<test::Node> rectangle_nodes(const RectangleLight& light, int steps) {
-  const Vector3d edge_x = light.edge_x.cast<double>(), edge_y = light.edge_y.cast<double>();
-  const Vector3d area = edge_x.cross(edge_y);
-  const auto rule = test::gauss_legendre(steps, -0.5, 0.5);
-  std::vector<test::Node> nodes;
-  for (const auto& [u, weight_u] : rule) {
-    for (const auto& [v, weight_v] : rule) {
-      const Vector3d offset = light.center.cast<double>() + u * edge_x + v * edge_y;
-      const double distance = offset.norm();
-      const Vector3d direction = offset / distance;
-      nodes.push_back(
-          {direction, weight_u * weight_v * std::abs(area.dot(direction)) / (distance * distance)});
     }
   }
   return nodes;
@@ -139,8 +122,8 @@ TEST(LocalLightHighlight, OfARectangleKeepsItsStatedError) {
                                 .two_sided = true});
       const Material m = metal(c.alpha_x, c.alpha_y);
       const double found = shade(at_origin(), rig, m, Vector3f::UnitZ()).x();
-      const double truth =
-          specular_truth(m, Vector3f::UnitZ(), rectangle_nodes(rig.rectangles[0], 80));
+      const double truth = specular_truth(
+          m, Vector3f::UnitZ(), test::rectangle_nodes(rig.rectangles[0], Vector3d::Zero(), 80));
       error += (found - truth) * (found - truth);
       norm += truth * truth;
     }
@@ -198,7 +181,7 @@ TEST(LocalLightShadow, BesideAWallIsNearTheTruth) {
           {2 * axis, 2 * size * frame.x, size * frame.y, Rgb::Ones(), true});
       const std::vector<test::Node> nodes[2] = {
           cap_nodes(axis.cast<double>(), std::asin(double(size) / 2), 60),
-          rectangle_nodes(rigs[1].rectangles[0], 80)};
+          test::rectangle_nodes(rigs[1].rectangles[0], Vector3d::Zero(), 80)};
       for (int kind = 0; kind < 2; ++kind) {
         double truth = 0;
         for (const auto& [d, weight] : nodes[kind])
