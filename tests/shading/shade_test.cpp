@@ -33,6 +33,7 @@ Material metal(SpecularModel model, float alpha_x, float alpha_y) {
   Material m;
   m.diffuse = Rgb::Zero();
   m.specular = Rgb(0.9f, 0.8f, 0.7f);
+  m.fresnel.normal_reflectance = Rgb(0.9f, 0.8f, 0.7f);
   m.model = model;
   m.alpha_x = alpha_x;
   m.alpha_y = alpha_y;

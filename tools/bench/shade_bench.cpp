@@ -33,6 +33,8 @@ std::vector<Look> looks_of(const ProceduralScene& scene) {
   Material ward = brushed, ashikhmin = brushed;
   ward.model = SpecularModel::ward;
   ashikhmin.model = SpecularModel::ashikhmin_shirley;
+  ashikhmin.specular = Rgb::Ones();
+  ashikhmin.fresnel.normal_reflectance = brushed.specular;
   return {{"scene", scene.materials, scene.material_id},
           {"diffuse", {diffuse}, {}},
           {"ward 0.3/0.03", {ward}, {}},

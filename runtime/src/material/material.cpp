@@ -26,12 +26,6 @@ HalfVector half_vector(const Vector3f& outgoing, const Vector3f& incoming) {
 /// Exponent of Ashikhmin-Shirley with the same ASG as Ward's of this alpha.
 float phong_exponent(float alpha) { return 2 / (alpha * alpha); }
 
-Rgb schlick(const Rgb& normal_incidence, float cos_theta) {
-  const float m = std::clamp(1 - cos_theta, 0.0f, 1.0f);
-  const float m5 = m * m * m * m * m;
-  return normal_incidence + (1 - normal_incidence) * m5;
-}
-
 /// (h.x / alpha_x)^2 + (h.y / alpha_y)^2
 float ellipse(const Material& material, const Vector3f& h) {
   const float x = h.x() / material.alpha_x, y = h.y() / material.alpha_y;
@@ -61,8 +55,9 @@ Rgb smooth_factor(const Material& material, const Vector3f& outgoing, const Vect
   }
   const float cos_d = std::max(cos_difference, kMinCosine);
   const float n_u = phong_exponent(material.alpha_x), n_v = phong_exponent(material.alpha_y);
-  return schlick(material.specular, cos_d) * (std::sqrt(n_u + 1) * std::sqrt(n_v + 1) /
-                                              (8 * kPi<float> * cos_d * std::max(cos_i, cos_o)));
+  return material.specular * eval_fresnel(material.fresnel, cos_d) *
+         (std::sqrt(n_u + 1) * std::sqrt(n_v + 1) /
+          (8 * kPi<float> * cos_d * std::max(cos_i, cos_o)));
 }
 
 Vector3f sample_ward_half(const Material& material, float u, float v) {
@@ -138,11 +133,16 @@ float pdf_specular_brdf(const Material& material, const Vector3f& outgoing,
   return pdf_half / (4 * half.cos_difference);
 }
 
-AnisotropicGaussian<float> specular_lobe(const Material& material) {
-  AnisotropicGaussian<float> lobe;
-  lobe.bandwidth_x = 1 / (material.alpha_x * material.alpha_x);
-  lobe.bandwidth_y = 1 / (material.alpha_y * material.alpha_y);
-  return lobe;
+float eval_distribution(const Material& material, const Vector3f& half) {
+  return distribution(material, half);
+}
+
+HalfVectorLobes half_vector_lobes(const Material& material, int) {
+  HalfVectorLobes lobes;
+  lobes.count = 1;
+  lobes.lobe[0].bandwidth_x = 1 / (material.alpha_x * material.alpha_x);
+  lobes.lobe[0].bandwidth_y = 1 / (material.alpha_y * material.alpha_y);
+  return lobes;
 }
 
 Rgb specular_smooth_factor(const Material& material, const Vector3f& outgoing,

@@ -201,7 +201,7 @@ std::optional<SpecularView> specular_view(const ShadingPoint& point, const Vecto
                                           const Material& material, const Lighting& lighting,
                                           const PointVisibility& visibility,
                                           const ShadingOptions& options) {
-  AnisotropicGaussian<float> half_lobe = specular_lobe(material);
+  AnisotropicGaussian<float> half_lobe = half_vector_lobes(material, 1).lobe[0];
   half_lobe.frame = point.frame;
   const AnisotropicGaussian<float> lobe = warp_to_incoming(half_lobe, outgoing).lobe;
   const float cosine = lobe.frame.z.dot(point.frame.z);
