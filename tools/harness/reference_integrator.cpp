@@ -35,6 +35,19 @@ double brdf_pdf(const ReferenceIntegrator::Point& point, const Vector3f& incomin
   return pdf;
 }
 
+/// An estimate of what the specular part reflects: as if all of it left by the mirror direction.
+/// d omega_i = 4 h.o d omega_h.
+double mirror_albedo(const Material& material, const Vector3f& outgoing) {
+  double lobes_integral = 0;
+  const HalfVectorLobes lobes = half_vector_lobes(material, 1);
+  for (size_t i = 0; i < static_cast<size_t>(lobes.count); ++i)
+    lobes_integral += double(integral(lobes.lobe[i]));
+  const Vector3f mirror(-outgoing.x(), -outgoing.y(), outgoing.z());
+  const double cosine = outgoing.z();
+  return luminance(specular_smooth_factor(material, outgoing, mirror)) * lobes_integral * 4 *
+         cosine * cosine;
+}
+
 /// A uniform direction of the cone around a unit axis, of a height 1 - cos(its radius).
 Vector3d sample_cone(const Vector3d& axis, double height, const Uniform2& uniform) {
   const double drop = uniform.u * height;  // 1 - cos of the angle to the axis
@@ -228,11 +241,10 @@ ReferenceIntegrator::Point ReferenceIntegrator::prepare(const Vector3f& position
   point.local_outgoing = frame.to_local(outgoing).normalized();
   point.material = &material;
   const double diffuse = luminance(material.diffuse);
-  const double specular = material.has_specular() ? luminance(material.specular) : 0;
-  // Both parts keep a share: the specular part's albedo is not known, and may be far from its
-  // colour.
-  point.diffuse_chance = specular > 0 ? std::clamp(diffuse / (diffuse + specular), 0.1, 0.9) : 1;
-  if (!(diffuse > 0) && specular > 0) point.diffuse_chance = 0;
+  if (!material.has_specular() || point.local_outgoing.z() <= 0) return point;
+  // Both parts keep a share, since the specular part's albedo is an estimate.
+  const double specular = mirror_albedo(material, point.local_outgoing);
+  point.diffuse_chance = diffuse > 0 ? std::clamp(diffuse / (diffuse + specular), 0.1, 0.9) : 0;
   return point;
 }
 

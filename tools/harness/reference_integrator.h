@@ -54,7 +54,7 @@ class ReferenceIntegrator {
     Vector3f ray_origin;      ///< the position, off the surface along the normal
     Vector3f local_outgoing;  ///< unit, in the frame
     const Material* material;
-    double diffuse_chance;  ///< of drawing from the diffuse part of the BRDF
+    double diffuse_chance = 1;  ///< of drawing from the diffuse part of the BRDF
   };
   /// `outgoing` is a unit direction of the world; where it is below the horizon of the frame, all
   /// samples are black. `material` outlives the point.

@@ -1,114 +1,73 @@
 #include "burnish/material/material.h"
 
-#include <algorithm>
-#include <cmath>
+#include "material/ashikhmin.h"
+#include "material/fitted_sampling.h"
+#include "material/half_vector.h"
+#include "material/microfacet.h"
+#include "material/ward.h"
 
 namespace burnish {
 namespace {
 
-// Ward's 1/sqrt(i.z o.z) and Ashikhmin's 1/(h.i) have poles at the horizon; the cosine below which
-// they are held. The exact BRDF and the smooth factor share it.
-constexpr float kMinCosine = 1e-4f;
-
-struct HalfVector {
-  Vector3f h;
-  float cos_difference;  // h . i = h . o
-};
-
-HalfVector half_vector(const Vector3f& outgoing, const Vector3f& incoming) {
-  const Vector3f sum = incoming + outgoing;
-  const float length = sum.norm();
-  if (length < 1e-6f) return {Vector3f::UnitZ(), 0};  // exactly opposite: h is undefined
-  const Vector3f h = sum / length;
-  return {h, std::max(h.dot(incoming), 0.0f)};
-}
-
-/// Exponent of Ashikhmin-Shirley with the same ASG as Ward's of this alpha.
-float phong_exponent(float alpha) { return 2 / (alpha * alpha); }
-
-/// (h.x / alpha_x)^2 + (h.y / alpha_y)^2
-float ellipse(const Material& material, const Vector3f& h) {
-  const float x = h.x() / material.alpha_x, y = h.y() / material.alpha_y;
-  return x * x + y * y;
-}
-
-/// D(h), with peak 1.
-float distribution(const Material& material, const Vector3f& h) {
-  if (h.z() <= 0) return 0;
-  if (material.model == SpecularModel::ward)
-    return std::exp(-2 * ellipse(material, h) / (1 + h.z()));
-  // (h.z)^((n_u h.x^2 + n_v h.y^2) / (1 - h.z^2)) with the logarithm of h.z from the sine, which
-  // keeps its digits near the axis.
-  const float sine2 = h.x() * h.x() + h.y() * h.y();
-  if (sine2 <= 0) return 1;
-  const float log_z = 0.5f * std::log1p(-std::min(sine2, 1.0f - 1e-7f));
-  return std::exp(2 * ellipse(material, h) / sine2 * log_z);
-}
+using internal::HalfVector;
+using internal::microfacets_of;
 
 Rgb smooth_factor(const Material& material, const Vector3f& outgoing, const Vector3f& incoming,
-                  float cos_difference) {
-  const float cos_i = std::max(incoming.z(), kMinCosine),
-              cos_o = std::max(outgoing.z(), kMinCosine);
-  if (material.model == SpecularModel::ward) {
-    return material.specular /
-           (4 * kPi<float> * material.alpha_x * material.alpha_y * std::sqrt(cos_i * cos_o));
+                  const HalfVector& half) {
+  const float cos_d = std::max(half.cos_difference, internal::kMinCosine);
+  switch (material.model) {
+    case SpecularModel::none:
+      break;
+    case SpecularModel::ward:
+      return internal::ward_smooth_factor(material, outgoing, incoming);
+    case SpecularModel::ward_balanced:
+      return material.specular * (microfacet_peak(microfacets_of(material)) / (4 * cos_d * cos_d));
+    case SpecularModel::ashikhmin_shirley:
+      return internal::ashikhmin_smooth_factor(material, outgoing, incoming, half.cos_difference);
+    case SpecularModel::cook_torrance: {
+      const internal::Microfacets facets = microfacets_of(material);
+      return material.specular * eval_fresnel(material.fresnel, half.cos_difference) *
+             (microfacet_peak(facets) *
+              shadowing_over_cosines(facets, material.shadowing, outgoing, incoming, half));
+    }
+    case SpecularModel::fitted:
+      return material.specular *
+             eval_smooth_factor(*material.fitted, outgoing.z(), incoming.z(), half.cos_difference);
   }
-  const float cos_d = std::max(cos_difference, kMinCosine);
-  const float n_u = phong_exponent(material.alpha_x), n_v = phong_exponent(material.alpha_y);
-  return material.specular * eval_fresnel(material.fresnel, cos_d) *
-         (std::sqrt(n_u + 1) * std::sqrt(n_v + 1) /
-          (8 * kPi<float> * cos_d * std::max(cos_i, cos_o)));
-}
-
-Vector3f sample_ward_half(const Material& material, float u, float v) {
-  // phi by the density 1/k(phi), k = cos^2/alpha_x^2 + sin^2/alpha_y^2; then cos(theta) given phi
-  // exactly.
-  const float psi = 2 * kPi<float> * u;
-  const float phi = std::atan2(material.alpha_y * std::sin(psi), material.alpha_x * std::cos(psi));
-  const float cos_phi = std::cos(phi), sin_phi = std::sin(phi);
-  const float k = ellipse(material, {cos_phi, sin_phi, 0});
-  const float one_minus_cos = -std::log1p(v * std::expm1(-2 * k)) / (2 * k);
-  const float sine = std::sqrt(std::max(one_minus_cos * (2 - one_minus_cos), 0.0f));
-  return {sine * cos_phi, sine * sin_phi, 1 - one_minus_cos};
-}
-
-float pdf_ward_half(const Material& material, const Vector3f& h) {
-  const float sine2 = h.x() * h.x() + h.y() * h.y();
-  const float k =
-      sine2 > 0 ? ellipse(material, h) / sine2 : 1 / (material.alpha_x * material.alpha_y);
-  return distribution(material, h) /
-         (kPi<float> * material.alpha_x * material.alpha_y * -std::expm1(-2 * k));
-}
-
-Vector3f sample_ashikhmin_half(const Material& material, float u, float v) {
-  const float n_u = phong_exponent(material.alpha_x), n_v = phong_exponent(material.alpha_y);
-  const float psi = 2 * kPi<float> * u;
-  const float phi =
-      std::atan2(std::sqrt(n_u + 1) * std::sin(psi), std::sqrt(n_v + 1) * std::cos(psi));
-  const float cos_phi = std::cos(phi), sin_phi = std::sin(phi);
-  const float exponent = n_u * cos_phi * cos_phi + n_v * sin_phi * sin_phi;
-  // cos(theta) = (1 - v)^(1 / (exponent + 1)); the sine from expm1 keeps its digits for large
-  // exponents.
-  const float log_cos = std::log1p(-v) / (exponent + 1);
-  const float sine = std::sqrt(std::max(-std::expm1(2 * log_cos), 0.0f));
-  return {sine * cos_phi, sine * sin_phi, std::exp(log_cos)};
-}
-
-float pdf_ashikhmin_half(const Material& material, const Vector3f& h) {
-  const float n_u = phong_exponent(material.alpha_x), n_v = phong_exponent(material.alpha_y);
-  const float peak = std::sqrt(n_u + 1) * std::sqrt(n_v + 1) / (2 * kPi<float>);
-  return peak * distribution(material, h);
+  return Rgb::Zero();
 }
 
 }  // namespace
 
+float eval_distribution(const Material& material, const Vector3f& half) {
+  if (half.z() <= 0) return 0;
+  switch (material.model) {
+    case SpecularModel::none:
+      break;
+    case SpecularModel::ward:
+      return internal::eval_ward_lobe(material, half);
+    case SpecularModel::ashikhmin_shirley:
+      return internal::eval_ashikhmin_lobe(material, half);
+    case SpecularModel::ward_balanced:
+    case SpecularModel::cook_torrance:
+      return eval_microfacet_lobe(microfacets_of(material), half);
+    case SpecularModel::fitted:
+      return eval_distribution(*material.fitted, half);
+  }
+  return 0;
+}
+
+Rgb specular_smooth_factor(const Material& material, const Vector3f& outgoing,
+                           const Vector3f& incoming) {
+  return smooth_factor(material, outgoing, incoming, internal::half_vector(outgoing, incoming));
+}
+
 Rgb eval_specular_brdf(const Material& material, const Vector3f& outgoing,
                        const Vector3f& incoming) {
   if (!material.has_specular() || outgoing.z() <= 0 || incoming.z() <= 0) return Rgb::Zero();
-  const HalfVector half = half_vector(outgoing, incoming);
+  const HalfVector half = internal::half_vector(outgoing, incoming);
   if (half.cos_difference <= 0) return Rgb::Zero();
-  return smooth_factor(material, outgoing, incoming, half.cos_difference) *
-         distribution(material, half.h);
+  return smooth_factor(material, outgoing, incoming, half) * eval_distribution(material, half.h);
 }
 
 Rgb eval_brdf(const Material& material, const Vector3f& outgoing, const Vector3f& incoming) {
@@ -118,37 +77,59 @@ Rgb eval_brdf(const Material& material, const Vector3f& outgoing, const Vector3f
 
 Vector3f sample_specular_brdf(const Material& material, const Vector3f& outgoing, float u,
                               float v) {
-  const Vector3f h = material.model == SpecularModel::ward ? sample_ward_half(material, u, v)
-                                                           : sample_ashikhmin_half(material, u, v);
+  Vector3f h = Vector3f::UnitZ();
+  switch (material.model) {
+    case SpecularModel::none:
+      break;
+    case SpecularModel::ward:
+      h = internal::sample_ward_half(material, u, v);
+      break;
+    case SpecularModel::ashikhmin_shirley:
+      h = internal::sample_ashikhmin_half(material, u, v);
+      break;
+    case SpecularModel::ward_balanced:
+    case SpecularModel::cook_torrance:
+      h = sample_microfacet_half(microfacets_of(material), outgoing, u, v);
+      break;
+    case SpecularModel::fitted:
+      h = internal::sample_fitted_half(*material.fitted, u, v);
+      break;
+  }
   return 2 * outgoing.dot(h) * h - outgoing;
 }
 
 float pdf_specular_brdf(const Material& material, const Vector3f& outgoing,
                         const Vector3f& incoming) {
-  const HalfVector half = half_vector(outgoing, incoming);
+  const HalfVector half = internal::half_vector(outgoing, incoming);
   if (half.cos_difference <= 0 || half.h.z() <= 0) return 0;
-  const float pdf_half = material.model == SpecularModel::ward
-                             ? pdf_ward_half(material, half.h)
-                             : pdf_ashikhmin_half(material, half.h);
-  return pdf_half / (4 * half.cos_difference);
-}
-
-float eval_distribution(const Material& material, const Vector3f& half) {
-  return distribution(material, half);
+  const float jacobian = 4 * half.cos_difference;
+  switch (material.model) {
+    case SpecularModel::none:
+      break;
+    case SpecularModel::ward:
+      return internal::pdf_ward_half(material, half.h) / jacobian;
+    case SpecularModel::ashikhmin_shirley:
+      return internal::pdf_ashikhmin_half(material, half.h) / jacobian;
+    case SpecularModel::ward_balanced:
+    case SpecularModel::cook_torrance:
+      return pdf_microfacet_reflection(microfacets_of(material), outgoing, half);
+    case SpecularModel::fitted:
+      return internal::pdf_fitted_half(*material.fitted, half.h) / jacobian;
+  }
+  return 0;
 }
 
 HalfVectorLobes half_vector_lobes(const Material& material, int) {
   HalfVectorLobes lobes;
+  if (material.model == SpecularModel::fitted) {
+    for (const AnisotropicGaussian<float>& lobe : material.fitted->lobes)
+      lobes.lobe[static_cast<size_t>(lobes.count++)] = lobe;
+    return lobes;
+  }
   lobes.count = 1;
   lobes.lobe[0].bandwidth_x = 1 / (material.alpha_x * material.alpha_x);
   lobes.lobe[0].bandwidth_y = 1 / (material.alpha_y * material.alpha_y);
   return lobes;
-}
-
-Rgb specular_smooth_factor(const Material& material, const Vector3f& outgoing,
-                           const Vector3f& incoming) {
-  return smooth_factor(material, outgoing, incoming,
-                       half_vector(outgoing, incoming).cos_difference);
 }
 
 }  // namespace burnish

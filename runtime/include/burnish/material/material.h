@@ -47,7 +47,8 @@ enum class Shadowing {
 /// may change from frame to frame.
 struct Material {
   Rgb diffuse = Rgb::Constant(0.5f);  ///< albedo, 0..1
-  Rgb specular = Rgb::Ones();         ///< scale of the specular part, >= 0; ward: its reflectance
+  Rgb specular = Rgb::Ones();         ///< scale of the specular part, 0..kMaxSpecular; ward,
+                                      ///< ward_balanced: its reflectance
   SpecularModel model = SpecularModel::none;
   float alpha_x = 0.3f;  ///< roughness (microfacet slope) along the tangent, 1e-4..1
   float alpha_y = 0.3f;  ///< along the bitangent, 1e-4..1
@@ -59,9 +60,10 @@ struct Material {
   bool has_specular() const { return model != SpecularModel::none && (specular > 0.0f).any(); }
 };
 
-/// Bounds of alpha_x and alpha_y.
+/// Bounds of alpha_x, alpha_y and specular.
 inline constexpr float kMinAlpha = 1e-4f;
 inline constexpr float kMaxAlpha = 1.0f;
+inline constexpr float kMaxSpecular = 1e6f;
 
 /// What is wrong with a material's numbers, naming the field, or nothing.
 std::string domain_error(const Material& material);
@@ -74,11 +76,13 @@ Rgb eval_specular_brdf(const Material& material, const Vector3f& outgoing,
                        const Vector3f& incoming);
 /// @}
 
-/// Importance sampling of the specular part (the half vector exactly by its distribution). `u`, `v`
-/// in [0, 1). Returns an incoming direction in the local frame, possibly below the horizon (then
-/// its BRDF is zero). Requires material.has_specular() and outgoing.z > 0.
+/// Importance sampling of the specular part: the half vector exactly by its distribution, GGX's by
+/// its visible part (dupuy2023), `fitted` by its lobes over the sphere. `u`, `v` in [0, 1). Returns
+/// an incoming direction in the local frame, possibly below the horizon (then its BRDF is zero).
+/// Requires material.has_specular() and outgoing.z > 0.
 Vector3f sample_specular_brdf(const Material& material, const Vector3f& outgoing, float u, float v);
-/// Density, per sr, with which sample_specular_brdf returns `incoming`.
+/// Density, per sr, with which sample_specular_brdf returns `incoming`; 0 where the half vector is
+/// below the horizon, where all directions are below it, too.
 float pdf_specular_brdf(const Material& material, const Vector3f& outgoing,
                         const Vector3f& incoming);
 
