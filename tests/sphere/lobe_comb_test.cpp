@@ -53,7 +53,7 @@ TYPED_TEST(LobeCombs, TeethKeepTheIntegralOfTheLobe) {
           EXPECT_TRUE(std::isfinite(tooth.bandwidth_x) && std::isfinite(tooth.bandwidth_y));
           EXPECT_TRUE(std::isfinite(tooth.amplitude) && tooth.amplitude > 0);
           EXPECT_LT(std::abs(comb.taps.tap[k].sine), 1);
-          EXPECT_GE(comb.shape[k].integral, 0);
+          EXPECT_GE(make_lobe_shape(tooth.bandwidth_x, tooth.bandwidth_y).integral, 0);
         }
         // The integral's own error (4e-7 in float, 6e-15 in double), twice, and the rounding of the
         // sum; near the largest bandwidths an integral is a denormal number.
@@ -177,7 +177,10 @@ double shading_error(double alpha_x, double alpha_y, double view, int count, uns
     if (count == 0) value = integrate_lobe(warp_to_incoming(half, o).lobe, lit);
     for (int k = 0; k < count; ++k) {
       const AnisotropicGaussian<double> tooth = comb_tooth(comb, half, k);
-      value += integrate_lobe(warp_mean_to_incoming(tooth, comb.shape[k], o).lobe, lit);
+      value += integrate_lobe(
+          warp_mean_to_incoming(tooth, make_lobe_shape(tooth.bandwidth_x, tooth.bandwidth_y), o)
+              .lobe,
+          lit);
     }
     error += (value - truth) * (value - truth);
     norm += truth * truth;

@@ -7,7 +7,6 @@
 
 #include "burnish/sphere/anisotropic_gaussian.h"
 #include "burnish/sphere/special_functions.h"
-#include "burnish/sphere/spherical_warp.h"
 
 /// An anisotropic lobe as a row of narrower ones along its long axis. The long lobe bends when it
 /// is warped, and one lobe cannot; each of a row can be warped, shaded and shadowed on its own
@@ -54,8 +53,7 @@ AnisotropicGaussian<T> tap_lobe(const AnisotropicGaussian<T>& lobe, const LobeTa
 template <class T>
 struct LobeComb {
   LobeTaps<T> taps;
-  std::array<T, kMaxTaps> amplitude;         ///< of a tooth, for a lobe of amplitude one
-  std::array<LobeShape<T>, kMaxTaps> shape;  ///< of a tooth, for its warp
+  std::array<T, kMaxTaps> amplitude;  ///< of a tooth, for a lobe of amplitude one
 };
 
 /// A tooth of a lobe that has the bandwidths that the comb was made for.
@@ -125,9 +123,6 @@ LobeComb<T> make_lobe_comb(T bandwidth_x, T bandwidth_y, int count) {
     }
     const T bandwidth = T(std::min<double>(along, std::numeric_limits<T>::max()));
     comb.taps.tap[k] = {T(sine), bandwidth, T(weight)};
-    const bool along_x = bandwidth_x < bandwidth_y;
-    comb.shape[k] =
-        make_lobe_shape<T>(along_x ? bandwidth : bandwidth_x, along_x ? bandwidth_y : bandwidth);
     comb.amplitude[k] = T(weight * integral / asg_integral_exact<double>(narrow, bandwidth));
     total += weight;
   }

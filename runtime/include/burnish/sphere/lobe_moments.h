@@ -121,6 +121,55 @@ LobeMoments<T> asg_moments(T bandwidth_x, T bandwidth_y) {
   return m.cast<T>();
 }
 
+/// What a matched Gaussian needs to know of a unit-amplitude ASG.
+template <class T>
+struct AsgSecondMoments {
+  T integral;
+  T mean_xx, mean_yy;  ///< E[(v.x)^2], E[(v.y)^2] of the normalised lobe; E[(v.z)^2] is the rest
+};
+
+namespace internal {
+
+/// Integral of r^3 exp(-k r^2) over 0..1, times two: (1 - (1 + k) exp(-k)) / k^2.
+template <class T>
+T disc_second_moment(T k) {
+  if (k > 1) return (1 - (1 + k) * std::exp(-k)) / (k * k);
+  T sum = 0, power = T(0.5);  // (-k)^n / (n + 2)!
+  for (int n = 0; n < 17; ++n) {
+    sum += power * T(n + 1);
+    power *= -k / T(n + 3);
+  }
+  return sum;
+}
+
+}  // namespace internal
+
+/// By the quadrature of asg_integral_midpoints, for bandwidths from 0 on: relative error 3e-6 in
+/// float, 1e-13 in double. 8 or 18 exponentials.
+template <class T>
+AsgSecondMoments<T> asg_second_moments(T bandwidth_x, T bandwidth_y) {
+  const T edge = internal::kEdgeOutOfSight<T> + 3;  // the moments' edge is k exp(-k)
+  if (std::min(bandwidth_x, bandwidth_y) > edge)
+    return {asg_integral_fast(bandwidth_x, bandwidth_y), 1 / (2 * bandwidth_x),
+            1 / (2 * bandwidth_y)};
+  constexpr T kOffset = T(12.5);
+  constexpr int kAzimuths = std::is_same_v<T, float> ? 8 : 18;
+  const T large = std::max(bandwidth_x, bandwidth_y), small = std::min(bandwidth_x, bandwidth_y);
+  const T squeeze = (small + kOffset) / (large + kOffset);
+  T mass = 0, narrow = 0, wide = 0;
+  for (const T cos_squared : internal::quarter_turn_cosines_squared<T, kAzimuths>()) {
+    const auto azimuth = internal::asg_azimuth(large, small, squeeze, cos_squared, 1 - cos_squared);
+    const T weight = azimuth.bandwidth + kOffset;
+    const T second = weight * internal::disc_second_moment(azimuth.bandwidth);
+    mass += weight * one_minus_exp_over(azimuth.bandwidth);
+    narrow += second * azimuth.cos_squared;
+    wide += second * azimuth.sin_squared;
+  }
+  const T scale = kPi<T> / (std::sqrt(large + kOffset) * std::sqrt(small + kOffset) * kAzimuths);
+  const bool x_is_narrow = bandwidth_x >= bandwidth_y;
+  return {scale * mass, (x_is_narrow ? narrow : wide) / mass, (x_is_narrow ? wide : narrow) / mass};
+}
+
 /// Moments, exact, of a uniform cap around z (a spherical light) of a height 1 - cos(its radius) in
 /// [0, 2]. The height is the argument because the cosine has no digits for small caps.
 template <class T>
