@@ -1,8 +1,11 @@
 #pragma once
 
+#include "burnish/formats/light_file.h"
+#include "json_values.h"
+
 /// What the reader and the writer of light files share.
 namespace burnish {
 
-inline constexpr const char* kLightFormatName = "burnish lights";
+inline constexpr JsonFormat kLightFormat = {"burnish lights", "light", kLightFormatVersion};
 
 }  // namespace burnish

@@ -2,65 +2,25 @@
 #include <limits>
 
 #include <Eigen/Geometry>
-#include <Eigen/SVD>
 #include <fmt/format.h>
 
-#include "burnish/formats/error.h"
 #include "burnish/formats/light_file.h"
 #include "burnish/light/local_lights.h"
 #include "file_bytes.h"
-#include "json_text.h"
+#include "json_values.h"
 #include "light_format.h"
 
 namespace burnish {
 namespace {
 
-constexpr float kFrameTolerance = 1e-3f;
-constexpr float kRounding = 4e-6f;  // some 30 roundings of a float near 1
-constexpr float kMax = std::numeric_limits<float>::max();
-
-Vector3f read_vector(const JsonPlace& place, float low = -kMax) {
-  place.expect_array(3);
-  return {place.at(size_t{0}).float_in(low, kMax), place.at(1).float_in(low, kMax),
-          place.at(2).float_in(low, kMax)};
-}
-
-Vector3f read_unit(const JsonPlace& place) {
-  const Vector3f vector = read_vector(place);
-  const float length = vector.stableNorm();
-  if (!(std::abs(length - 1) <= kFrameTolerance))
-    place.fail(fmt::format("length {}, expected 1 within {}", length, kFrameTolerance));
-  return vector;
-}
-
-/// Made exactly orthonormal, unless it is but for rounding: then it is kept as written.
-Frame<float> read_frame(const JsonPlace& axis_place, const JsonPlace& tangent_place) {
-  const Vector3f axis = read_unit(axis_place), tangent = read_unit(tangent_place);
-  const float cosine = axis.dot(tangent);
-  if (!(std::abs(cosine) <= kFrameTolerance))
-    tangent_place.fail(
-        fmt::format("cosine {} with the axis, expected 0 within {}", cosine, kFrameTolerance));
-  const auto is_rounding = [](float error) { return std::abs(error) <= kRounding; };
-  if (is_rounding(cosine) && is_rounding(axis.norm() - 1) && is_rounding(tangent.norm() - 1))
-    return {tangent, axis.cross(tangent).normalized(), axis};
-  return frame_from_normal_tangent<float>(axis.normalized(), tangent);
-}
-
 EnvironmentLobe read_lobe(const JsonPlace& place, int version) {
   place.expect_fields({"axis", "tangent", "bandwidth_x", "bandwidth_y", "color"});
   EnvironmentLobe light;
   light.lobe.frame = read_frame(place.at("axis"), place.at("tangent"));
-  light.lobe.bandwidth_x = place.at("bandwidth_x").float_in(0, kMax);
-  light.lobe.bandwidth_y = place.at("bandwidth_y").float_in(0, kMax);
-  light.color = read_vector(place.at("color"), version == 1 ? 0 : -kMax).array();
+  light.lobe.bandwidth_x = place.at("bandwidth_x").float_in(0, kMaxFloat);
+  light.lobe.bandwidth_y = place.at("bandwidth_y").float_in(0, kMaxFloat);
+  light.color = read_vector(place.at("color"), version == 1 ? 0 : -kMaxFloat).array();
   return light;
-}
-
-Rgb read_color(const JsonPlace& place) { return read_vector(place, 0).array(); }
-
-void expect_one_of(const JsonPlace& place, const char* first, const char* second) {
-  if (place.has(first) == place.has(second))
-    place.fail(fmt::format("expected one of the fields '{}' and '{}'", first, second));
 }
 
 /// A light's radiance: as the file has it, or from the field `other`, of which one must be there.
@@ -81,7 +41,7 @@ SphereLight read_sphere(const JsonPlace& place, int version) {
     place.expect_fields({"center", "radius", "radiance", "power"});
   SphereLight light;
   light.center = read_vector(place.at("center"));
-  light.radius = place.at("radius").float_in(std::numeric_limits<float>::min(), kMax);
+  light.radius = place.at("radius").float_in(std::numeric_limits<float>::min(), kMaxFloat);
   light.radiance = read_radiance(
       place, "power", [&](const Rgb& power) { return radiance_of_sphere(power, light.radius); });
   return light;
@@ -91,7 +51,7 @@ DirectionalLight read_directional(const JsonPlace& place) {
   place.expect_fields({"toward", "angular_radius_rad", "irradiance", "radiance"});
   DirectionalLight light;
   light.toward = read_unit(place.at("toward"));
-  if (std::abs(light.toward.norm() - 1) > kRounding) light.toward.normalize();
+  if (std::abs(light.toward.norm() - 1) > kFrameRounding) light.toward.normalize();
   light.angular_radius_rad = place.at("angular_radius_rad").float_in(0, kPi<float> / 2);
   expect_one_of(place, "radiance", "irradiance");
   if (place.has("irradiance")) {
@@ -111,7 +71,7 @@ DirectionalLight read_directional(const JsonPlace& place) {
 Vector3f read_edge(const JsonPlace& place) {
   const Vector3f edge = read_vector(place);
   const float length = edge.stableNorm();
-  if (!(length >= std::numeric_limits<float>::min() && length <= kMax))
+  if (!(length >= std::numeric_limits<float>::min() && length <= kMaxFloat))
     place.fail(fmt::format("length {}, expected above 0", length));
   return edge;
 }
@@ -128,22 +88,12 @@ RectangleLight read_rectangle(const JsonPlace& place) {
   if (!(std::abs(cosine) <= kFrameTolerance))
     place.at("edge_y").fail(
         fmt::format("cosine {} with edge_x, expected 0 within {}", cosine, kFrameTolerance));
-  if (std::abs(cosine) > kRounding) light.edge_y -= (cosine * height) * along;
+  if (std::abs(cosine) > kFrameRounding) light.edge_y -= (cosine * height) * along;
   if (place.has("two_sided")) light.two_sided = place.at("two_sided").boolean();
   light.radiance = read_radiance(place, "power", [&](const Rgb& power) {
     return radiance_of_rectangle(power, width, height, light.two_sided);
   });
   return light;
-}
-
-template <class Read>
-auto read_list(const JsonPlace& root, const char* name, const Read& read) {
-  std::vector<decltype(read(root))> lights;
-  if (!root.has(name)) return lights;
-  const JsonPlace list = root.at(name);
-  list.expect_array();
-  for (size_t i = 0; i < list.value.size(); ++i) lights.push_back(read(list.at(i)));
-  return lights;
 }
 
 /// Fails for lights that cannot be shaded with, turned and scaled as the file says.
@@ -159,51 +109,12 @@ void expect_sound(const JsonPlace& root, const char* list, const std::vector<Lig
   }
 }
 
-std::optional<double> read_fit_error(const JsonPlace& root, const char* name) {
-  if (!root.has(name) || root.at(name).value.is_null()) return {};
-  const JsonPlace place = root.at(name);
-  const double error = place.number();
-  if (!(error >= 0)) place.fail(fmt::format("{}, expected 0 or more", error));
-  return error;
-}
-
-/// A 3 x 3 rotation, rows first; made exactly orthonormal when it is not quite.
-Eigen::Matrix3f read_rotation(const JsonPlace& place) {
-  place.expect_array(3);
-  Eigen::Matrix3f matrix;
-  for (int row = 0; row < 3; ++row)
-    matrix.row(row) =
-        read_vector(place.at(static_cast<size_t>(row)), -1 - kFrameTolerance).transpose();
-  const Eigen::Matrix3d exact = matrix.cast<double>();
-  const Eigen::Matrix3d product = exact.transpose() * exact;
-  const double error = (product - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff();
-  if (!(error <= 2 * kFrameTolerance) || matrix.determinant() < 0)
-    place.fail("not a rotation: expected orthonormal rows and determinant 1");
-  if (error <= kRounding) return matrix;  // rounding of a rotation: kept as written
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(exact, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  return (svd.matrixU() * svd.matrixV().transpose()).cast<float>();
-}
-
-int read_version(const JsonPlace& root) {
-  const JsonPlace format = root.at("format");
-  if (format.string() != kLightFormatName)
-    format.fail(fmt::format("'{}', expected '{}'", format.string(), kLightFormatName));
-  const JsonPlace version = root.at("format_version");
-  if (!version.value.is_number_integer() || version.number() < 1)
-    version.fail("expected an integer, 1 or more");
-  if (version.number() > kLightFormatVersion)
-    throw Error(ErrorKind::unsupported, root.subject,
-                fmt::format("light format version {}, this build reads up to {}", version.number(),
-                            kLightFormatVersion));
-  return static_cast<int>(version.number());
-}
-
 }  // namespace
 
 LightFile parse_lights(std::string_view json, const std::string& subject) {
   const nlohmann::json document = parse_json(json, subject);
   const JsonPlace root{document, nlohmann::json::json_pointer(), json, subject};
-  const int version = read_version(root);
+  const int version = read_format_version(root, kLightFormat);
   if (version == 1)
     root.expect_fields({"format", "format_version", "name", "source", "fit_relative_l2",
                         "world_from_environment", "lobes", "spheres"});
@@ -217,8 +128,8 @@ LightFile parse_lights(std::string_view json, const std::string& subject) {
   file.fit_relative_l2 = read_fit_error(root, "fit_relative_l2");
   file.fit_irradiance_relative_l2 = read_fit_error(root, "fit_irradiance_relative_l2");
   if (root.has("world_from_environment"))
-    file.world_from_environment = read_rotation(root.at("world_from_environment"));
-  if (root.has("scale")) file.scale = root.at("scale").float_in(0, kMax);
+    file.world_from_environment = read_rotation_matrix(root.at("world_from_environment"));
+  if (root.has("scale")) file.scale = root.at("scale").float_in(0, kMaxFloat);
   file.rig.lobes =
       read_list(root, "lobes", [&](const JsonPlace& place) { return read_lobe(place, version); });
   file.rig.directionals = read_list(root, "directionals", read_directional);

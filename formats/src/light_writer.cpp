@@ -1,57 +1,37 @@
-#include <algorithm>
-
 #include <fmt/format.h>
 
-#include "burnish/formats/error.h"
 #include "burnish/formats/light_file.h"
 #include "burnish/formats/output_file.h"
-#include "json_text.h"
 #include "light_format.h"
 
 namespace burnish {
 namespace {
 
-template <class Vector>
-std::string format_vector(const Vector& v) {
-  return fmt::format("[{}, {}, {}]", v[0], v[1], v[2]);
-}
-
 std::string format_lobe(const EnvironmentLobe& light) {
   const AnisotropicGaussian<float>& lobe = light.lobe;
   return fmt::format(
-      "    {{\"axis\": {}, \"tangent\": {}, \"bandwidth_x\": {}, \"bandwidth_y\": {}, "
+      "{{\"axis\": {}, \"tangent\": {}, \"bandwidth_x\": {}, \"bandwidth_y\": {}, "
       "\"color\": {}}}",
       format_vector(lobe.frame.z), format_vector(lobe.frame.x), lobe.bandwidth_x, lobe.bandwidth_y,
-      format_vector(Rgb(light.color * lobe.amplitude)));
+      format_vector(light.color * lobe.amplitude));
 }
 
 std::string format_sphere(const SphereLight& light) {
-  return fmt::format("    {{\"center\": {}, \"radius\": {}, \"radiance\": {}}}",
+  return fmt::format("{{\"center\": {}, \"radius\": {}, \"radiance\": {}}}",
                      format_vector(light.center), light.radius, format_vector(light.radiance));
 }
 
 std::string format_directional(const DirectionalLight& light) {
-  return fmt::format("    {{\"toward\": {}, \"angular_radius_rad\": {}, \"irradiance\": {}}}",
+  return fmt::format("{{\"toward\": {}, \"angular_radius_rad\": {}, \"irradiance\": {}}}",
                      format_vector(light.toward), light.angular_radius_rad,
                      format_vector(light.irradiance));
 }
 
 std::string format_rectangle(const RectangleLight& light) {
   return fmt::format(
-      "    {{\"center\": {}, \"edge_x\": {}, \"edge_y\": {}, \"two_sided\": {}, \"radiance\": {}}}",
+      "{{\"center\": {}, \"edge_x\": {}, \"edge_y\": {}, \"two_sided\": {}, \"radiance\": {}}}",
       format_vector(light.center), format_vector(light.edge_x), format_vector(light.edge_y),
       light.two_sided, format_vector(light.radiance));
-}
-
-template <class Lights, class Format>
-std::string format_list(const char* name, const Lights& lights, Format format) {
-  std::string text = fmt::format("  \"{}\": [", name);
-  const char* separator = "\n";
-  for (const auto& light : lights) {
-    text += separator + format(light);
-    separator = ",\n";
-  }
-  return text + (lights.empty() ? "]" : "\n  ]");
 }
 
 }  // namespace
@@ -59,7 +39,7 @@ std::string format_list(const char* name, const Lights& lights, Format format) {
 std::string format_lights(const LightFile& lights, const std::string& subject) {
   const Eigen::Matrix3f& rotation = lights.world_from_environment;
   std::string text = "{\n";
-  text += fmt::format("  \"format\": \"{}\",\n", kLightFormatName);
+  text += fmt::format("  \"format\": \"{}\",\n", kLightFormat.name);
   text += fmt::format("  \"format_version\": {},\n", kLightFormatVersion);
   text += fmt::format("  \"name\": {},\n", json_string(lights.name));
   text += fmt::format("  \"source\": {},\n", json_string(lights.source));
@@ -76,13 +56,7 @@ std::string format_lights(const LightFile& lights, const std::string& subject) {
   text += format_list("directionals", lights.rig.directionals, format_directional) + ",\n";
   text += format_list("spheres", lights.rig.spheres, format_sphere) + ",\n";
   text += format_list("rectangles", lights.rig.rectangles, format_rectangle) + "\n}\n";
-  try {
-    parse_lights(text, subject);  // what we could not read back is not written
-  } catch (const Error& error) {
-    std::string message = error.what();
-    message.erase(0, std::min(message.size(), subject.size() + 2));
-    throw Error(ErrorKind::output, subject, "these lights cannot be stored: " + message);
-  }
+  require_readable(subject, "these lights", [&] { parse_lights(text, subject); });
   return text;
 }
 

@@ -1,44 +1,23 @@
 #include "burnish/formats/scene_file.h"
 
-#include <cmath>
 #include <filesystem>
-#include <limits>
 #include <set>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <fmt/format.h>
 
-#include "burnish/formats/error.h"
 #include "file_bytes.h"
-#include "json_text.h"
+#include "json_values.h"
 
 namespace burnish {
 namespace {
 
-constexpr const char* kSceneFormatName = "burnish scene";
-// Positions are floats: what lies beyond is not a place.
-constexpr double kMax = std::numeric_limits<float>::max();
-
-double read_number(const JsonPlace& place, double low = -kMax, double high = kMax) {
-  const double found = place.number();
-  if (!(found >= low && found <= high))
-    place.fail(fmt::format("{}, expected {}..{}", found, low, high));
-  return found;
-}
-
-double read_positive(const JsonPlace& place) {
-  const double found = read_number(place);
-  if (!(found > 0)) place.fail(fmt::format("{}, expected more than 0", found));
-  return found;
-}
-
-Vector3d read_vector(const JsonPlace& place) {
-  place.expect_array(3);
-  Vector3d vector;
-  for (size_t i = 0; i < 3; ++i) vector[static_cast<Eigen::Index>(i)] = read_number(place.at(i));
-  return vector;
-}
+constexpr JsonFormat kSceneFormat = {"burnish scene", "scene", kSceneFormatVersion};
+constexpr std::array kRoleNames = {std::pair{"receiver", SceneRole::receiver},
+                                   std::pair{"occluder", SceneRole::occluder}};
+constexpr std::array kUpNames = {std::pair{"x", UpAxis::x}, std::pair{"y", UpAxis::y},
+                                 std::pair{"z", UpAxis::z}};
 
 Vector3d read_scale(const JsonPlace& place) {
   if (!place.value.is_array()) return Vector3d::Constant(read_positive(place));
@@ -50,7 +29,7 @@ Vector3d read_scale(const JsonPlace& place) {
 Eigen::Matrix3d read_rotation(const JsonPlace& place) {
   place.expect_fields({"axis", "degrees"});
   const JsonPlace axis_place = place.at("axis");
-  const Vector3d axis = read_vector(axis_place);
+  const Vector3d axis = read_vector_double(axis_place);
   if (axis.isZero(0)) axis_place.fail("zero, expected a direction");
   const double degrees = read_number(place.at("degrees"));
   return Eigen::AngleAxisd(degrees * (kPi<double> / 180), axis.stableNormalized())
@@ -90,7 +69,7 @@ SceneInstance read_instance(const JsonPlace& place, std::set<std::string>& names
   } else {
     if (place.has("rotation")) placement.leftCols<3>() = read_rotation(place.at("rotation"));
     if (place.has("scale")) placement.leftCols<3>() *= read_scale(place.at("scale")).asDiagonal();
-    if (place.has("translation")) placement.col(3) = read_vector(place.at("translation"));
+    if (place.has("translation")) placement.col(3) = read_vector_double(place.at("translation"));
   }
   if (!is_invertible(placement))
     (place.has("matrix") ? place.at("matrix") : place)
@@ -107,21 +86,6 @@ std::vector<SceneInstance> read_instances(const JsonPlace& place, std::set<std::
   return instances;
 }
 
-SceneRole read_role(const JsonPlace& place) {
-  const std::string role = place.string();
-  if (role == "receiver") return SceneRole::receiver;
-  if (role == "occluder") return SceneRole::occluder;
-  place.fail(fmt::format("'{}', expected receiver or occluder", role));
-}
-
-UpAxis read_up(const JsonPlace& place) {
-  const std::string up = place.string();
-  if (up == "x") return UpAxis::x;
-  if (up == "y") return UpAxis::y;
-  if (up == "z") return UpAxis::z;
-  place.fail(fmt::format("'{}', expected x, y or z", up));
-}
-
 SceneMesh read_scene_mesh(const JsonPlace& place, const std::filesystem::path& folder,
                           std::set<std::string>& names) {
   place.expect_fields({"file", "name", "role", "instances"});
@@ -132,7 +96,7 @@ SceneMesh read_scene_mesh(const JsonPlace& place, const std::filesystem::path& f
   mesh.place =
       fmt::format("line {}, {}", json_line(file.text, file.pointer), file.pointer.to_string());
   if (place.has("name")) mesh.name = read_name(place.at("name"), names);
-  if (place.has("role")) mesh.role = read_role(place.at("role"));
+  if (place.has("role")) mesh.role = read_choice(place.at("role"), kRoleNames);
   if (place.has("instances")) mesh.instances = read_instances(place.at("instances"), names);
   return mesh;
 }
@@ -148,26 +112,8 @@ SceneGround read_ground(const JsonPlace& place) {
     }
   }
   if (place.has("size")) ground.size = read_number(place.at("size"), 1, 1000);
-  if (place.has("cells")) {
-    const JsonPlace cells = place.at("cells");
-    const double found = read_number(cells, 2, 4096);
-    if (found != std::floor(found)) cells.fail(fmt::format("{}, expected an integer", found));
-    ground.cells = static_cast<int>(found);
-  }
+  if (place.has("cells")) ground.cells = read_integer(place.at("cells"), 2, 4096);
   return ground;
-}
-
-void check_version(const JsonPlace& root) {
-  const JsonPlace format = root.at("format");
-  if (format.string() != kSceneFormatName)
-    format.fail(fmt::format("'{}', expected '{}'", format.string(), kSceneFormatName));
-  const JsonPlace version = root.at("format_version");
-  if (!version.value.is_number_integer() || version.number() < 1)
-    version.fail("expected an integer, 1 or more");
-  if (version.number() > kSceneFormatVersion)
-    throw Error(ErrorKind::unsupported, root.subject,
-                fmt::format("scene format version {}, this build reads up to {}", version.number(),
-                            kSceneFormatVersion));
 }
 
 bool has_receiver(const SceneDescription& scene) {
@@ -191,12 +137,12 @@ bool is_invertible(const Placement& placement) {
 SceneDescription parse_scene(std::string_view json, const std::string& path) {
   const nlohmann::json document = parse_json(json, path);
   const JsonPlace root{document, nlohmann::json::json_pointer(), json, path};
-  check_version(root);
+  read_format_version(root, kSceneFormat);
   root.expect_fields({"format", "format_version", "name", "up", "meshes", "ground"});
   SceneDescription scene;
   scene.path = path;
   if (root.has("name")) scene.name = root.at("name").string();
-  if (root.has("up")) scene.up = read_up(root.at("up"));
+  if (root.has("up")) scene.up = read_choice(root.at("up"), kUpNames);
   const JsonPlace meshes = root.at("meshes");
   meshes.expect_array();
   if (meshes.value.empty()) meshes.fail("empty, expected at least one mesh");
