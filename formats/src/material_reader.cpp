@@ -1,0 +1,151 @@
+#include <algorithm>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "burnish/formats/material_file.h"
+#include "burnish/formats/material_names.h"
+#include "burnish/material/roughness.h"
+#include "file_bytes.h"
+#include "json_values.h"
+#include "material_format.h"
+
+namespace burnish {
+namespace {
+
+constexpr float kTiny = std::numeric_limits<float>::min();
+// Refractive indices: more than any material has, and squares stay in range.
+constexpr float kMaxIndex = 1000;
+
+/// Fails for a field that belongs to other models.
+void expect_of_model(const JsonPlace& root, const char* field, bool of_model, SpecularModel model) {
+  if (root.has(field) && !of_model)
+    root.at(field).fail(
+        fmt::format("not a field of the model '{}'", name_of(kSpecularModelNames, model)));
+}
+
+void expect_fields_of(const JsonPlace& root, SpecularModel model) {
+  const bool microfacets = model == SpecularModel::cook_torrance;
+  expect_of_model(root, "specular", model != SpecularModel::none, model);
+  for (const char* field : {"alpha", "alpha_x", "alpha_y", "roughness"})
+    expect_of_model(root, field, has_alpha(model), model);
+  expect_of_model(root, "fresnel", has_fresnel(model), model);
+  expect_of_model(root, "distribution", microfacets, model);
+  expect_of_model(root, "shadowing", microfacets, model);
+  expect_of_model(root, "fitted", model == SpecularModel::fitted, model);
+}
+
+void read_alphas(const JsonPlace& root, Material& material) {
+  const bool by_axis = root.has("alpha_x") || root.has("alpha_y");
+  if (root.has("alpha") + root.has("roughness") + by_axis != 1)
+    root.fail("expected one of 'alpha', 'roughness', and 'alpha_x' with 'alpha_y'");
+  const auto alpha = [&](const char* field) {
+    return root.at(field).float_in(kMinAlpha, kMaxAlpha);
+  };
+  if (by_axis) {
+    material.alpha_x = alpha("alpha_x");
+    material.alpha_y = alpha("alpha_y");
+    return;
+  }
+  material.alpha_x =
+      root.has("alpha")
+          ? alpha("alpha")
+          : alpha_from_roughness(root.at("roughness").float_in(kMinRoughness, kMaxRoughness));
+  material.alpha_y = material.alpha_x;
+}
+
+Fresnel read_fresnel(const JsonPlace& place) {
+  place.expect_fields({"normal_reflectance", "eta", "k"});
+  expect_one_of(place, "normal_reflectance", "eta");
+  Fresnel fresnel;
+  if (place.has("normal_reflectance")) {
+    if (place.has("k")) place.at("k").fail("beside 'normal_reflectance', expected it with 'eta'");
+    fresnel.normal_reflectance = read_color_or_grey(place.at("normal_reflectance"), 0, 1);
+    return fresnel;
+  }
+  fresnel.model = place.has("k") ? FresnelModel::conductor : FresnelModel::dielectric;
+  fresnel.eta = read_color_or_grey(place.at("eta"), 1 / kMaxIndex, kMaxIndex);
+  if (place.has("k")) fresnel.k = read_color_or_grey(place.at("k"), 0, kMaxIndex);
+  return fresnel;
+}
+
+AnisotropicGaussian<float> read_half_vector_lobe(const JsonPlace& place) {
+  place.expect_fields({"axis", "tangent", "bandwidth_x", "bandwidth_y", "amplitude"});
+  AnisotropicGaussian<float> lobe;
+  lobe.frame = read_frame(place.at("axis"), place.at("tangent"));
+  lobe.bandwidth_x = place.at("bandwidth_x").float_in(kTiny, kMaxFloat);
+  lobe.bandwidth_y = place.at("bandwidth_y").float_in(kTiny, kMaxFloat);
+  lobe.amplitude = place.at("amplitude").float_in(0, kMaxFloat);
+  return lobe;
+}
+
+/// A table over angles: two values or more.
+template <class Read>
+auto read_table(const JsonPlace& root, const char* name, const Read& read) {
+  const JsonPlace place = root.at(name);
+  auto table = read_list(root, name, read);
+  if (table.size() < 2)
+    place.fail(fmt::format("has {} elements, expected 2 or more", table.size()));
+  return table;
+}
+
+std::shared_ptr<const FittedSpecular> read_fitted(const JsonPlace& place) {
+  place.expect_fields({"lobes", "color_by_difference", "masking"});
+  auto fitted = std::make_shared<FittedSpecular>();
+  const JsonPlace lobes = place.at("lobes");
+  fitted->lobes = read_list(place, "lobes", read_half_vector_lobe);
+  if (fitted->lobes.empty() || fitted->lobes.size() > kMaxFittedLobes)
+    lobes.fail(
+        fmt::format("has {} elements, expected 1..{}", fitted->lobes.size(), kMaxFittedLobes));
+  fitted->color_by_difference =
+      read_table(place, "color_by_difference",
+                 [](const JsonPlace& color) { return read_color_or_grey(color, 0, kMaxFloat); });
+  fitted->masking = read_table(place, "masking",
+                               [](const JsonPlace& value) { return value.float_in(0, kMaxFloat); });
+  return fitted;
+}
+
+Material read_material(const JsonPlace& root) {
+  Material material;
+  material.model = read_choice(root.at("model"), kSpecularModelNames);
+  expect_fields_of(root, material.model);
+  const bool only_diffuse = material.model == SpecularModel::none;
+  material.diffuse = Rgb::Zero();
+  if (only_diffuse || root.has("diffuse"))
+    material.diffuse = read_color_or_grey(root.at("diffuse"), 0, 1);
+  if (root.has("specular"))
+    material.specular = read_color_or_grey(root.at("specular"), 0, kMaxFloat);
+  if (has_alpha(material.model)) read_alphas(root, material);
+  if (has_fresnel(material.model)) material.fresnel = read_fresnel(root.at("fresnel"));
+  if (root.has("distribution"))
+    material.distribution = read_choice(root.at("distribution"), kDistributionNames);
+  if (root.has("shadowing"))
+    material.shadowing = read_choice(root.at("shadowing"), kShadowingNames);
+  if (material.model == SpecularModel::fitted) material.fitted = read_fitted(root.at("fitted"));
+  return material;
+}
+
+}  // namespace
+
+MaterialFile parse_material(std::string_view json, const std::string& subject) {
+  const nlohmann::json document = parse_json(json, subject);
+  const JsonPlace root{document, nlohmann::json::json_pointer(), json, subject};
+  read_format_version(root, kMaterialFormat);
+  root.expect_fields({"format", "format_version", "name", "source", "fit_relative_l2", "model",
+                      "diffuse", "specular", "alpha", "alpha_x", "alpha_y", "roughness", "fresnel",
+                      "distribution", "shadowing", "fitted"});
+  MaterialFile file;
+  if (root.has("name")) file.name = root.at("name").string();
+  if (root.has("source")) file.source = root.at("source").string();
+  file.fit_relative_l2 = read_fit_error(root, "fit_relative_l2");
+  file.material = read_material(root);
+  return file;
+}
+
+MaterialFile read_material_file(const std::string& path) {
+  return parse_material(read_file_bytes(path), path);
+}
+
+Material read_material(const std::string& path) { return read_material_file(path).material; }
+
+}  // namespace burnish
