@@ -110,7 +110,8 @@ TEST(Render, PerPixelIsShadePointAtTheHit) {
       const float coefficient = 0.3f * point.position.x();  // linear, so interpolation is exact
       point.coefficients = &coefficient;
       const Rgb expected =
-          shade_point(point, -direction, s.scene.materials[0], s.lighting, s.options);
+          shade_point(point, -direction, prepare_material(s.scene.materials[0], s.options.specular),
+                      s.lighting, s.options);
       // Float positions and coefficients, through a lobe whose slope is of order 10.
       EXPECT_LT((picture.radiance.at(x, y) - expected).abs().maxCoeff(),
                 1e-4f * (1 + expected.maxCoeff()))
@@ -140,7 +141,7 @@ TEST(Render, PerVertexInterpolatesVertexRadiance) {
     const Rgb expected = shade_point(
         vertex_shading_point(s.transfer, vertex),
         outgoing_toward(s.view.camera.origin, s.transfer.positions[vertex], Vector3f::UnitY()),
-        s.scene.materials[0], s.lighting, s.options);
+        prepare_material(s.scene.materials[0], s.options.specular), s.lighting, s.options);
     EXPECT_LT((radiance[vertex] - expected).abs().maxCoeff(), 1e-5f * (1 + expected.maxCoeff()));
   }
 }

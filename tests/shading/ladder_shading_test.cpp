@@ -89,7 +89,9 @@ float diffuse(const ShadingPoint& point, const LightRig& rig, const ShadingOptio
   white.diffuse = Rgb::Constant(kPi<float>);
   white.specular = Rgb::Zero();
   const PreparedLights lights = prepare_lights(rig, options);
-  return shade_point(point, Vector3f::UnitZ(), white, {&lights, nullptr}, options).x();
+  return shade_point(point, Vector3f::UnitZ(), prepare_material(white, {}), {&lights, nullptr},
+                     options)
+      .x();
 }
 
 double truth(const LightRig& rig, const Visible& visible) {

@@ -33,7 +33,8 @@ ShadingPoint at_origin() {
 Rgb shade(const ShadingPoint& point, const LightRig& rig, const Material& material,
           const Vector3f& outgoing, const ShadingOptions& options = {}) {
   const PreparedLights lights = prepare_lights(rig, options);
-  return shade_point(point, outgoing, material, {&lights, nullptr}, options);
+  return shade_point(point, outgoing, prepare_material(material, options.specular),
+                     {&lights, nullptr}, options);
 }
 
 /// Directions of a cap around an axis, with weights that sum to its solid angle.
@@ -140,7 +141,8 @@ TEST(LocalLightHighlight, InsideASphereIsThatOfAConstantEnvironment) {
   LightRig rig;
   rig.spheres.push_back({Vector3f(0.1f, 0.2f, -0.3f), 1, Rgb::Constant(2)});
   for (const Vector3f& outgoing : {Vector3f(0, 0, 1), Vector3f(0.6f, 0, 0.8f)}) {
-    const Rgb truth = shade_point(at_origin(), outgoing, m, {&none, &environment}, {});
+    const Rgb truth =
+        shade_point(at_origin(), outgoing, prepare_material(m, {}), {&none, &environment}, {});
     // The map gives its constant to 1e-5, the sphere its radiance.
     EXPECT_LT((shade(at_origin(), rig, m, outgoing) / truth - 1).abs().maxCoeff(), 2e-5);
   }

@@ -84,7 +84,8 @@ TEST(ShadeDiffuse, UnoccludedNarrowLightIsTheClosedForm) {
         one_lobe(Vector3f(std::sin(theta), 0, std::cos(theta)), bandwidth, bandwidth, Rgb(1, 2, 3));
     const PreparedLights lights = prepare_lights(rig, {});
     const Rgb radiance =
-        shade_point(upward_point(), Vector3f::UnitZ(), diffuse_material(), {&lights, nullptr}, {});
+        shade_point(upward_point(), Vector3f::UnitZ(), prepare_material(diffuse_material(), {}),
+                    {&lights, nullptr}, {});
     const double expected = 0.5 / kPi<double> * 2 * kPi<double> / bandwidth * std::cos(theta);
     // A light of deviation .01 is a delta to 1e-4.
     EXPECT_NEAR(radiance.y() / expected, 1, 1e-3) << theta;
@@ -99,8 +100,8 @@ TEST(ShadeDiffuse, UnoccludedWideLightKeepsTheStatedError) {
       const PreparedLights lights = prepare_lights(rig, {});
       Material white;
       white.diffuse = Rgb::Constant(kPi<float>);  // radiance is then irradiance
-      const Rgb radiance =
-          shade_point(upward_point(), Vector3f::UnitZ(), white, {&lights, nullptr}, {});
+      const Rgb radiance = shade_point(upward_point(), Vector3f::UnitZ(),
+                                       prepare_material(white, {}), {&lights, nullptr}, {});
       const double truth = diffuse_truth(rig, [](const Vector3d&) { return true; });
       // mean_clamped_cosine: at most .002 of the lobe's integral.
       EXPECT_NEAR(radiance.x(), truth, 0.002 * lights.lobes[0].integral)
@@ -130,8 +131,9 @@ double wall_error(const ShadingOptions& options, float bandwidth_x, float bandwi
     const LightRig rig = one_lobe(test::random_direction(random).cast<float>(), bandwidth_x,
                                   bandwidth_y, Rgb::Ones());
     const PreparedLights lights = prepare_lights(rig, options);
-    const double estimate =
-        shade_point(point, Vector3f::UnitZ(), white, {&lights, nullptr}, options).x();
+    const double estimate = shade_point(point, Vector3f::UnitZ(), prepare_material(white, {}),
+                                        {&lights, nullptr}, options)
+                                .x();
     const double truth = diffuse_truth(rig, visible);
     error += (estimate - truth) * (estimate - truth);
     norm += truth * truth;
@@ -165,7 +167,10 @@ TEST(ShadeDiffuse, FullyBlockedIsBlack) {
   const PreparedLights lights = prepare_lights(one_lobe(Vector3f::UnitZ(), 20, 5, Rgb::Ones()), {});
   Material both = metal(SpecularModel::ward, 0.2f, 0.2f);
   both.diffuse = Rgb::Ones();
-  EXPECT_LT(shade_point(point, Vector3f::UnitZ(), both, {&lights, nullptr}, {}).maxCoeff(), 1e-6);
+  EXPECT_LT(
+      shade_point(point, Vector3f::UnitZ(), prepare_material(both, {}), {&lights, nullptr}, {})
+          .maxCoeff(),
+      1e-6);
 }
 
 TEST(ShadeSphereLight, IrradianceIsTheClosedForm) {
@@ -179,8 +184,8 @@ TEST(ShadeSphereLight, IrradianceIsTheClosedForm) {
     const float distance = rig.spheres[0].center.norm();
     const double expected = kPi<double> * radius * radius / distance / distance *
                             (rig.spheres[0].center.z() / distance);
-    const Rgb radiance =
-        shade_point(upward_point(), Vector3f::UnitZ(), white, {&lights, nullptr}, {});
+    const Rgb radiance = shade_point(upward_point(), Vector3f::UnitZ(), prepare_material(white, {}),
+                                     {&lights, nullptr}, {});
     // Where the sphere nears the horizon (radius 1.5 reaches 7 degrees above it), the normal tail
     // adds up to 1 %.
     EXPECT_NEAR(radiance.x() / expected, 1, 0.01) << radius;
@@ -193,8 +198,8 @@ TEST(ShadeSphereLight, FromInsideIsAHemisphereOfLight) {
   const PreparedLights lights = prepare_lights(rig, {});
   Material white;
   white.diffuse = Rgb::Ones();
-  const Rgb radiance =
-      shade_point(upward_point(), Vector3f::UnitZ(), white, {&lights, nullptr}, {});
+  const Rgb radiance = shade_point(upward_point(), Vector3f::UnitZ(), prepare_material(white, {}),
+                                   {&lights, nullptr}, {});
   // The exact value is 1; mean_clamped_cosine is good to .002.
   EXPECT_NEAR(radiance.x(), 1, 0.002);
 }
@@ -207,7 +212,8 @@ TEST(ShadeSpecular, ConstantEnvironmentGivesTheAlbedo) {
       const Material m = metal(model, 0.15f, 0.05f);
       const double t = view * kPi<double> / 180;
       const Vector3f o(std::sin(t), 0, std::cos(t));
-      const Rgb radiance = shade_point(upward_point(), o, m, {&none, &environment}, {});
+      const Rgb radiance =
+          shade_point(upward_point(), o, prepare_material(m, {}), {&none, &environment}, {});
       std::mt19937 random(kSeed);
       std::uniform_real_distribution<float> unit(0, 1);
       double sum = 0;
@@ -240,8 +246,10 @@ TEST(ShadeSpecular, WallHidesHalfOfALobeAtItsBoundary) {
   const PreparedLights none;
   const Material m = metal(SpecularModel::ward, 0.1f, 0.03f);
   // Mirrored at x = 0: the wall's edge runs through the lobe's axis.
-  const Rgb a = shade_point(open, Vector3f::UnitZ(), m, {&none, &environment}, {});
-  const Rgb b = shade_point(walled, Vector3f::UnitZ(), m, {&none, &environment}, {});
+  const Rgb a =
+      shade_point(open, Vector3f::UnitZ(), prepare_material(m, {}), {&none, &environment}, {});
+  const Rgb b =
+      shade_point(walled, Vector3f::UnitZ(), prepare_material(m, {}), {&none, &environment}, {});
   // A 64^2 texel is .055 rad, the lobe .14 wide across the edge: half a texel of offset is .15 of a
   // deviation.
   EXPECT_NEAR(b.x() / a.x(), 0.5, 0.08);
@@ -269,7 +277,8 @@ TEST(ShadeVertices, RangesGiveTheSameAsTheWhole) {
   const Transfer transfer = small_transfer(random, 50, 3);
   const LightRig rig = one_lobe(Vector3f(0, 1, 0), 5, 2, Rgb(1, 2, 3));
   const PreparedLights lights = prepare_lights(rig, {});
-  std::vector<Material> materials{diffuse_material(), metal(SpecularModel::ward, 0.3f, 0.1f)};
+  const std::vector<PreparedMaterial> materials = prepare_materials(
+      std::vector{diffuse_material(), metal(SpecularModel::ward, 0.3f, 0.1f)}, {});
   std::vector<std::uint8_t> ids(50);
   for (int i = 0; i < 50; ++i) ids[i] = i % 2;
   std::vector<Rgb> whole(50), parts(50);
@@ -309,10 +318,11 @@ TEST(Shade, IsFiniteAndNonNegativeForAdversarialInput) {
         for (const float alpha : {kMinAlpha, 0.1f, kMaxAlpha}) {
           Material m = metal(SpecularModel::ward, alpha, kMaxAlpha);
           m.diffuse = Rgb::Ones();
+          const PreparedMaterial prepared = prepare_material(m, options.specular);
           std::vector<Rgb> radiance(transfer.vertex_count());
           for (const PrefilteredEnvironment* map :
                {&environment, (const PrefilteredEnvironment*)nullptr}) {
-            shade_vertices(transfer, {&lights, map}, std::span(&m, 1), {}, Vector3f(0, 0, 5),
+            shade_vertices(transfer, {&lights, map}, std::span(&prepared, 1), {}, Vector3f(0, 0, 5),
                            options, 0, radiance);
             for (size_t i = 0; i < radiance.size(); ++i)
               ASSERT_TRUE(radiance[i].allFinite() && (radiance[i] >= 0).all())

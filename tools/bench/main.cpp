@@ -8,6 +8,8 @@ int main(int argc, char** argv) {
       Command{"bake", "time of a bake, and the diffuse error of what it baked", declare_bake_bench},
       Command{"light", "time and error of fitted lights and of the filtered environment",
               declare_light_bench},
+      Command{"material", "error of specular materials as lobes, by model, roughness and view",
+              declare_material_bench},
       Command{"shade", "time of shading all vertices, and its error, by material",
               declare_shade_bench},
       Command{"sphere", "ns a call of each operator of the sphere, and the error it has for that",

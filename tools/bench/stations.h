@@ -7,6 +7,7 @@ namespace burnish::tools {
 
 std::function<void()> declare_bake_bench(CLI::App& app);
 std::function<void()> declare_light_bench(CLI::App& app);
+std::function<void()> declare_material_bench(CLI::App& app);
 std::function<void()> declare_shade_bench(CLI::App& app);
 std::function<void()> declare_sphere_bench(CLI::App& app);
 

@@ -67,6 +67,13 @@ void add_shading_options(CLI::App& app, ShadingOptions& options) {
       "accuracy of a lobe's integral");
   add_choice(app, "--ladder", options.ladder, {{"on", true}, {"off", false}},
              "whether wide lights see through the visibility ladder, where one was baked");
+  add_choice(app, "--specular-form", options.specular.form,
+             {{"peak", SpecularForm::peak}, {"moments", SpecularForm::moments}},
+             "how a highlight's lobes are found: by the paper's warp, or by their moments");
+  add_number(app, "--specular-taps", "N", options.specular.taps, {1, kMaxTaps},
+             "parts that a highlight's lobe is cut into: more are finer and slower");
+  add_number(app, "--specular-lobes", "N", options.specular.lobes, {1, 3},
+             "lobes of a distribution with a long tail (GGX), at most");
   add_number(app, "--split-bandwidth", "A", options.split_bandwidth, {0, 1000},
              "lights wider than this are split into narrower ones, 0 for none");
   add_number(app, "--environment-taps", "N", options.environment_taps, {1, 64},

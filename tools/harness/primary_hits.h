@@ -38,9 +38,8 @@ struct Subject {
   std::span<const Material> materials;        ///< one or more
   std::span<const std::uint8_t> material_id;  ///< #V, or empty: all vertices have materials[0]
 
-  const Material& vertex_material(size_t vertex) const {
-    return materials[material_id.empty() ? 0 : material_id[vertex]];
-  }
+  size_t material_of(size_t vertex) const { return material_id.empty() ? 0 : material_id[vertex]; }
+  const Material& vertex_material(size_t vertex) const { return materials[material_of(vertex)]; }
 };
 
 /// A camera, the pixels and the antialiasing: samples_per_axis^2 samples on a regular grid in each

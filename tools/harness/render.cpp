@@ -34,10 +34,11 @@ void interpolate(const SurfacePoint& surface, const Coefficients& of, std::vecto
 /// Shades interpolated points; holds the interpolated coefficients between calls.
 class PixelShader {
  public:
-  PixelShader(const Subject& subject, const Vector3f& eye, const Lighting& lighting,
-              const ShadingOptions& options)
+  PixelShader(const Subject& subject, std::span<const PreparedMaterial> materials,
+              const Vector3f& eye, const Lighting& lighting, const ShadingOptions& options)
       : subject_(subject),
         transfer_(*subject.transfer),
+        materials_(materials),
         eye_(eye),
         lighting_(lighting),
         options_(options),
@@ -46,7 +47,7 @@ class PixelShader {
 
   Rgb operator()(const SurfacePoint& surface) {
     const Vector3f outgoing = outgoing_toward(eye_, surface.position, surface.frame.z);
-    const Material& material = subject_.vertex_material(surface.vertices[0]);
+    const PreparedMaterial& material = materials_[subject_.material_of(surface.vertices[0])];
     const auto& [a, b, c] = surface.vertices;
     if (transfer_.bases.empty() || (transfer_.basis_id[a] == transfer_.basis_id[b] &&
                                     transfer_.basis_id[a] == transfer_.basis_id[c]))
@@ -86,6 +87,7 @@ class PixelShader {
 
   const Subject& subject_;
   const Transfer& transfer_;
+  std::span<const PreparedMaterial> materials_;
   Vector3f eye_;
   const Lighting& lighting_;
   const ShadingOptions& options_;
@@ -96,11 +98,11 @@ class PixelShader {
 
 std::vector<Rgb> shade_all_vertices(const Subject& subject, const Lighting& lighting,
                                     const Vector3f& eye, const ShadingOptions& options) {
+  const std::vector<PreparedMaterial> materials = prepare_materials(subject.materials, options);
   std::vector<Rgb> radiance(subject.transfer->vertex_count());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, radiance.size(), 64), [&](const auto& range) {
-    shade_vertices(*subject.transfer, lighting, subject.materials, subject.material_id, eye,
-                   options, range.begin(),
-                   std::span(radiance).subspan(range.begin(), range.size()));
+    shade_vertices(*subject.transfer, lighting, materials, subject.material_id, eye, options,
+                   range.begin(), std::span(radiance).subspan(range.begin(), range.size()));
   });
   return radiance;
 }
@@ -119,13 +121,14 @@ Picture render(const Subject& subject, const PrimaryHits& hits, const Lighting& 
   }
 
   const auto start = Clock::now();
+  const std::vector<PreparedMaterial> materials = prepare_materials(subject.materials, options);
   const PrimaryRays camera = primary_rays(view.camera, view.width, view.height);
   const size_t per_pixel = hits.samples_per_pixel();
   Picture picture;
   picture.radiance = Image(view.width, view.height);
   picture.hit.assign(picture.radiance.pixels.size(), 0);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, picture.hit.size(), 256), [&](const auto& range) {
-    PixelShader shade_pixel(subject, eye, lighting, options);
+    PixelShader shade_pixel(subject, materials, eye, lighting, options);
     for (size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
       const std::span<const PrimaryHit> samples = hits.pixel_hits(pixel);
       Rgb sum = Rgb::Zero();

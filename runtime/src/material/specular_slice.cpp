@@ -11,11 +11,12 @@
 namespace burnish {
 namespace {
 
-/// A lobe whose standard deviation, in radians, is below this errs by less than .1 % as a whole.
-constexpr float kNarrow = 0.03f;
-/// Lobes rounder than this ratio of deviations are cut in both directions, where the number of
-/// teeth is a square.
-constexpr float kRound = 1.5f;
+/// A lobe bends by about the square of its longer deviation, in radians. Below this much of the
+/// shorter one it is left whole: teeth would only add their ripple.
+constexpr float kStraight = 0.04f;
+/// Lobes rounder than this ratio of deviations, and wider than this one, are cut in both
+/// directions where the number of teeth is a square.
+constexpr float kRound = 1.5f, kWideInBoth = 0.15f;
 
 float deviation(float bandwidth) { return 1 / std::sqrt(2 * bandwidth + 1); }
 
@@ -27,16 +28,16 @@ SpecularTooth make_tooth(const AnisotropicGaussian<float>& lobe) {
 /// Calls add(tooth) for each of `count` parts along a lobe's long axis.
 template <class Add>
 void cut(const AnisotropicGaussian<float>& lobe, int count, const Add& add) {
-  if (deviation(std::min(lobe.bandwidth_x, lobe.bandwidth_y)) < kNarrow) count = 1;
   const LobeComb<float> comb = make_lobe_comb(lobe.bandwidth_x, lobe.bandwidth_y, count);
   for (int k = 0; k < count; ++k) add(comb_tooth(comb, lobe, k));
 }
 
-void add_teeth(const AnisotropicGaussian<float>& lobe, int taps, PreparedSpecular& prepared) {
+void add_teeth(const AnisotropicGaussian<float>& lobe, int taps, PreparedMaterial& prepared) {
   const float wide = deviation(std::min(lobe.bandwidth_x, lobe.bandwidth_y));
   const float narrow = deviation(std::max(lobe.bandwidth_x, lobe.bandwidth_y));
+  if (wide * wide < kStraight * narrow) taps = 1;
   const int edge = static_cast<int>(std::lround(std::sqrt(static_cast<float>(taps))));
-  const bool both = edge * edge == taps && wide < kRound * narrow;
+  const bool both = edge * edge == taps && wide < kRound * narrow && narrow > kWideInBoth;
   const auto add = [&](const AnisotropicGaussian<float>& tooth) {
     prepared.tooth[static_cast<size_t>(prepared.count++)] = make_tooth(tooth);
   };
@@ -103,7 +104,7 @@ Node make_node(const Frame<float>& tooth, const Vector3f& local_outgoing, const 
 }
 
 /// D(h) over the lobes that stand for it: 1 where they are exact.
-float distribution_over_lobes(const PreparedSpecular& prepared, const Vector3f& half) {
+float distribution_over_lobes(const PreparedMaterial& prepared, const Vector3f& half) {
   if (prepared.material.model == SpecularModel::fitted) return 1;
   float sum = 0;
   for (int k = 0; k < prepared.lobes.count; ++k)
@@ -114,7 +115,7 @@ float distribution_over_lobes(const PreparedSpecular& prepared, const Vector3f& 
 }
 
 /// f cos over the lobes' sum, times the solid angle of incoming directions per half vector.
-Rgb node_weight(const PreparedSpecular& prepared, const Vector3f& outgoing, const Node& node) {
+Rgb node_weight(const PreparedMaterial& prepared, const Vector3f& outgoing, const Node& node) {
   if (node.cos_difference <= 0 || node.half.z() <= 0) return Rgb::Zero();
   // The rule is exact where n.i is linear; where it is not, a node may be just below.
   constexpr float kLowest = 1e-3f;
@@ -169,7 +170,7 @@ NodePlan plan_nodes(const SpecularTooth& tooth, const Vector3f& o, const Vector3
   return plan;
 }
 
-SliceLobe match_moments(const PreparedSpecular& prepared, const SpecularTooth& tooth,
+SliceLobe match_moments(const PreparedMaterial& prepared, const SpecularTooth& tooth,
                         const Vector3f& outgoing) {
   const Frame<float>& frame = tooth.lobe.frame;
   const Vector3f o = frame.to_local(outgoing);
@@ -208,7 +209,7 @@ SliceLobe match_moments(const PreparedSpecular& prepared, const SpecularTooth& t
 }
 
 /// Eq. 23-30.
-SliceLobe at_peak(const PreparedSpecular& prepared, const SpecularTooth& tooth,
+SliceLobe at_peak(const PreparedMaterial& prepared, const SpecularTooth& tooth,
                   const Vector3f& outgoing) {
   SliceLobe result;
   result.lobe = warp_to_incoming(tooth.lobe, outgoing).lobe;
@@ -223,9 +224,9 @@ SliceLobe at_peak(const PreparedSpecular& prepared, const SpecularTooth& tooth,
 
 }  // namespace
 
-PreparedSpecular prepare_specular(const Material& material,
+PreparedMaterial prepare_material(const Material& material,
                                   const SpecularOptions& options) noexcept {
-  PreparedSpecular prepared;
+  PreparedMaterial prepared;
   prepared.material = material;
   prepared.form = options.form;
   if (!material.has_specular()) return prepared;
@@ -236,7 +237,7 @@ PreparedSpecular prepare_specular(const Material& material,
   return prepared;
 }
 
-int specular_slice(const PreparedSpecular& prepared, const Vector3f& outgoing,
+int specular_slice(const PreparedMaterial& prepared, const Vector3f& outgoing,
                    std::span<SliceLobe, kMaxSpecularTeeth> slice) noexcept {
   if (outgoing.z() <= 0) return 0;
   int count = 0;

@@ -1,8 +1,8 @@
 #include "burnish/shading/shade.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -10,7 +10,6 @@
 #include "burnish/sphere/asg_product.h"
 #include "burnish/sphere/lobe_domain.h"
 #include "burnish/sphere/lobe_moments.h"
-#include "burnish/sphere/spherical_warp.h"
 #include "burnish/visibility/ssdf.h"
 #include "burnish/visibility/visibility_ladder.h"
 
@@ -189,34 +188,50 @@ float unshadowed_integral(const PreparedLobe& light, const Vector3f& normal,
   return light.integral * mean_clamped_cosine(light.moments, light.lobe.frame.to_local(normal));
 }
 
-/// The specular part of a material at a point, Eq. 30: light through `lobe`, times `weight`.
+/// A lobe of a material's specular part at a point: light through `lobe`, times `weight`.
 struct SpecularView {
-  AnisotropicGaussian<float> lobe;  ///< over incoming directions
-  float integral = 0;               ///< of the lobe; left 0 where only lobes give light
+  AnisotropicGaussian<float> lobe;  ///< over incoming directions of the world
+  float integral = 0;               ///< of the lobe
   Rgb weight;                       ///< smooth factor, cosine and visibility
 };
 
-/// Nothing where the lobe is hidden or below the horizon.
-std::optional<SpecularView> specular_view(const ShadingPoint& point, const Vector3f& outgoing,
-                                          const Material& material, const Lighting& lighting,
-                                          const PointVisibility& visibility,
-                                          const ShadingOptions& options) {
-  AnisotropicGaussian<float> half_lobe = half_vector_lobes(material, 1).lobe[0];
-  half_lobe.frame = point.frame;
-  const AnisotropicGaussian<float> lobe = warp_to_incoming(half_lobe, outgoing).lobe;
-  const float cosine = lobe.frame.z.dot(point.frame.z);
-  if (lobe.amplitude <= 0 || cosine <= 0) return {};
+struct SpecularViews {
+  std::array<SpecularView, kMaxSpecularTeeth> view;
+  int count = 0;
+
+  std::span<const SpecularView> all() const {
+    return std::span(view).first(static_cast<size_t>(count));
+  }
+};
+
+/// What is visible of a lobe of a slice.
+float visible_part(const AnisotropicGaussian<float>& lobe, SpecularForm form,
+                   const PointVisibility& visibility, const ShadingOptions& options) {
+  if (form == SpecularForm::moments)
+    return visibility.only_horizon() ? 1 : visible_share_by_ssdf(visibility, options, lobe);
   const SsdfSample boundary = visibility.lookup(lobe.frame.z);
-  const float visible =
-      visible_fraction(options.visibility, lobe, boundary.distance, boundary.gradient);
-  if (visible <= 0) return {};
-  const Rgb smooth = specular_smooth_factor(material, point.frame.to_local(outgoing),
-                                            point.frame.to_local(lobe.frame.z));
-  const PreparedLights& lights = *lighting.lights;
-  const bool only_lobes = !lighting.environment && lights.directionals.empty() &&
-                          lights.spheres.empty() && lights.rectangles.empty();
-  return SpecularView{lobe, only_lobes ? 0.0f : integral(lobe, options.integral),
-                      smooth * (cosine * visible)};
+  return visible_fraction(options.visibility, lobe, boundary.distance, boundary.gradient);
+}
+
+/// Without what is hidden or below the horizon.
+void find_specular_views(const ShadingPoint& point, const Vector3f& outgoing,
+                         const PreparedMaterial& material, const PointVisibility& visibility,
+                         const ShadingOptions& options, SpecularViews& views) {
+  std::array<SliceLobe, kMaxSpecularTeeth> slice;
+  const int count = specular_slice(material, point.frame.to_local(outgoing), slice);
+  for (const SliceLobe& part : std::span(slice).first(static_cast<size_t>(count))) {
+    SpecularView& view = views.view[static_cast<size_t>(views.count)];
+    view.lobe = part.lobe;
+    view.lobe.frame = {point.frame.to_world(part.lobe.frame.x),
+                       point.frame.to_world(part.lobe.frame.y),
+                       point.frame.to_world(part.lobe.frame.z)};
+    const float visible = visible_part(view.lobe, material.form, visibility, options);
+    if (visible <= 0) continue;
+    view.integral = material.form == SpecularForm::moments ? part.integral
+                                                           : integral(view.lobe, options.integral);
+    view.weight = part.weight * visible;
+    ++views.count;
+  }
 }
 
 /// Integral of the distant environment's radiance times the lobe.
@@ -276,14 +291,25 @@ PreparedLights prepare_lights(const LightRig& rig, const ShadingOptions& options
   return prepared;
 }
 
-Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing, const Material& material,
-                const Lighting& lighting, const ShadingOptions& options) noexcept {
+std::vector<PreparedMaterial> prepare_materials(std::span<const Material> materials,
+                                                const ShadingOptions& options) {
+  std::vector<PreparedMaterial> prepared;
+  prepared.reserve(materials.size());
+  for (const Material& material : materials)
+    prepared.push_back(prepare_material(material, options.specular));
+  return prepared;
+}
+
+Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing,
+                const PreparedMaterial& material, const Lighting& lighting,
+                const ShadingOptions& options) noexcept {
   if (outgoing.dot(point.frame.z) <= 0) return Rgb::Zero();
-  const bool diffuse = (material.diffuse > 0).any();
+  const Rgb& albedo = material.material.diffuse;
+  const bool diffuse = (albedo > 0).any();
   const PointVisibility visibility(point, options, diffuse);
-  std::optional<SpecularView> specular;
-  if (material.has_specular())
-    specular = specular_view(point, outgoing, material, lighting, visibility, options);
+  SpecularViews views;
+  if (material.count > 0)
+    find_specular_views(point, outgoing, material, visibility, options, views);
   const PreparedLights& lights = *lighting.lights;
   Rgb irradiance = Rgb::Zero(), reflected = Rgb::Zero();
   if (diffuse)
@@ -292,7 +318,8 @@ Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing, const Mater
           light.color * diffuse_integral(light.lobe, light.integral,
                                          unshadowed_integral(light, point.frame.z, options), point,
                                          visibility, options);
-  if (specular) reflected = light_through(*specular, lighting, options);
+  for (const SpecularView& view : views.all())
+    reflected += view.weight * light_through(view, lighting, options);
   const auto add_lights = [&](const auto& list) {
     for (const auto& source : list) {
       const LightAtPoint light = light_at(source, point.position, point.frame.z);
@@ -301,17 +328,16 @@ Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing, const Mater
         irradiance +=
             light.color * diffuse_integral(light.lobe, light.integral, light.cosine_integral, point,
                                            visibility, options);
-      if (specular) reflected += light_through(*specular, light, options);
+      for (const SpecularView& view : views.all())
+        reflected += view.weight * light_through(view, light, options);
     }
   };
-  if (diffuse || specular) {
+  if (diffuse || views.count > 0) {
     add_lights(lights.directionals);
     add_lights(lights.spheres);
     add_lights(lights.rectangles);
   }
-  Rgb radiance = material.diffuse / kPi<float> * irradiance;
-  if (specular) radiance += specular->weight * reflected;
-  return radiance;
+  return albedo / kPi<float> * irradiance + reflected;
 }
 
 ShadingPoint vertex_shading_point(const Transfer& transfer, size_t vertex) noexcept {
@@ -329,13 +355,13 @@ ShadingPoint vertex_shading_point(const Transfer& transfer, size_t vertex) noexc
 }
 
 void shade_vertices(const Transfer& transfer, const Lighting& lighting,
-                    std::span<const Material> materials, std::span<const std::uint8_t> material_id,
-                    const Vector3f& eye, const ShadingOptions& options, size_t first,
-                    std::span<Rgb> radiance) noexcept {
+                    std::span<const PreparedMaterial> materials,
+                    std::span<const std::uint8_t> material_id, const Vector3f& eye,
+                    const ShadingOptions& options, size_t first, std::span<Rgb> radiance) noexcept {
   for (size_t i = 0; i < radiance.size(); ++i) {
     const size_t vertex = first + i;
     const ShadingPoint point = vertex_shading_point(transfer, vertex);
-    const Material& material = materials[material_id.empty() ? 0 : material_id[vertex]];
+    const PreparedMaterial& material = materials[material_id.empty() ? 0 : material_id[vertex]];
     const Vector3f outgoing =
         lift_above_horizon((eye - point.position).normalized(), point.frame.z);
     radiance[i] = shade_point(point, outgoing, material, lighting, options);

@@ -11,9 +11,9 @@ int main() {
   transfer.positions = {burnish::Vector3f(0, 0, 0)};
   transfer.normals = {burnish::Vector3f(0, 0, 1)};
   transfer.tangents = {burnish::Vector3f(1, 0, 0)};
-  const burnish::Material diffuse;  // albedo 0.5
   const burnish::Vector3f eye(0, 0, 5);
   const burnish::ShadingOptions options;
+  const burnish::PreparedMaterial diffuse = burnish::prepare_material({}, options.specular);
   const burnish::PreparedLights lights = burnish::prepare_lights(rig, options);
   burnish::Rgb radiance;
   burnish::shade_vertices(transfer, {&lights, nullptr}, {&diffuse, 1}, {}, eye, options, 0,

@@ -40,7 +40,7 @@ struct SpecularTooth {
 inline constexpr int kMaxSpecularTeeth = kMaxFittedLobes * kMaxTaps;
 
 /// A material ready to be seen from any side: prepared once per change of it. No allocation.
-struct PreparedSpecular {
+struct PreparedMaterial {
   Material material;
   SpecularForm form = SpecularForm::moments;
   HalfVectorLobes lobes;  ///< that the teeth are cut from
@@ -49,7 +49,7 @@ struct PreparedSpecular {
 };
 
 /// Nothing is allocated or thrown.
-PreparedSpecular prepare_specular(const Material& material,
+PreparedMaterial prepare_material(const Material& material,
                                   const SpecularOptions& options) noexcept;
 
 struct SliceLobe {
@@ -62,7 +62,7 @@ struct SliceLobe {
 /// `outgoing` unit, in the local frame; the result is empty for outgoing.z <= 0. With
 /// SpecularForm::moments a lobe stands for what is above the horizon, though its Gaussian may reach
 /// below: its visible share is the visible fraction over that of the horizon alone.
-int specular_slice(const PreparedSpecular& prepared, const Vector3f& outgoing,
+int specular_slice(const PreparedMaterial& prepared, const Vector3f& outgoing,
                    std::span<SliceLobe, kMaxSpecularTeeth> slice) noexcept;
 
 }  // namespace burnish

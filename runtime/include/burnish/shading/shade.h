@@ -7,7 +7,7 @@
 #include "burnish/light/light_rig.h"
 #include "burnish/light/local_lights.h"
 #include "burnish/light/prefiltered_environment.h"
-#include "burnish/material/material.h"
+#include "burnish/material/specular_slice.h"
 #include "burnish/shading/transfer.h"
 #include "burnish/sphere/half_space.h"
 #include "burnish/sphere/lobe_moments.h"
@@ -20,14 +20,15 @@ enum class CosineModel {
   horizon_normalised,  ///< unshadowed cosine integral times visible fraction over horizon fraction
 };
 
-/// Speed for accuracy. The defaults are ours; VisibilityModel::hemisphere with
-/// CosineModel::constant is the paper's method.
+/// Speed for accuracy. The defaults are ours; VisibilityModel::hemisphere, CosineModel::constant
+/// and one tap of SpecularForm::peak are the paper's method.
 struct ShadingOptions {
   VisibilityModel visibility = VisibilityModel::directional;
   CosineModel cosine = CosineModel::horizon_normalised;
   AsgIntegral integral = AsgIntegral::exact;
-  int terms = 0;              ///< PCA terms used, 1..baked; 0: all that were baked
-  int environment_taps = 32;  ///< at most, along the long axis of a specular lobe, 1..64
+  int terms = 0;                  ///< PCA terms used, 1..baked; 0: all that were baked
+  SpecularOptions specular = {};  ///< how materials are prepared: see prepare_material
+  int environment_taps = 32;      ///< at most, along the long axis of a specular lobe, 1..64
   /// The horizon-normalised diffuse term of lobes wider than the transfer's crossover sees through
   /// the visibility ladder, where one was baked. False: through the SSDF, as the papers do.
   bool ladder = true;
@@ -75,10 +76,15 @@ struct ShadingPoint {
   float ladder_crossover = 0;                  ///< as in Transfer
 };
 
+/// As prepare_material, of each.
+std::vector<PreparedMaterial> prepare_materials(std::span<const Material> materials,
+                                                const ShadingOptions& options);
+
 /// Outgoing radiance of a point toward a unit direction, W sr^-1 m^-2 up to the lights' own scale.
 /// Zero where `outgoing` is below the horizon.
-Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing, const Material& material,
-                const Lighting& lighting, const ShadingOptions& options) noexcept;
+Rgb shade_point(const ShadingPoint& point, const Vector3f& outgoing,
+                const PreparedMaterial& material, const Lighting& lighting,
+                const ShadingOptions& options) noexcept;
 
 /// The shading point of a vertex of a transfer.
 ShadingPoint vertex_shading_point(const Transfer& transfer, size_t vertex) noexcept;
@@ -98,8 +104,8 @@ inline Vector3f lift_above_horizon(const Vector3f& outgoing, const Vector3f& nor
 /// threads as you like, on ranges that do not overlap. Vertices that face away from the eye are
 /// shaded by lift_above_horizon, so that interpolation across a silhouette does not darken.
 void shade_vertices(const Transfer& transfer, const Lighting& lighting,
-                    std::span<const Material> materials, std::span<const std::uint8_t> material_id,
-                    const Vector3f& eye, const ShadingOptions& options, size_t first,
-                    std::span<Rgb> radiance) noexcept;
+                    std::span<const PreparedMaterial> materials,
+                    std::span<const std::uint8_t> material_id, const Vector3f& eye,
+                    const ShadingOptions& options, size_t first, std::span<Rgb> radiance) noexcept;
 
 }  // namespace burnish

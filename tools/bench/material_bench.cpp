@@ -1,0 +1,171 @@
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include "bench.h"
+#include "burnish/material/specular_slice.h"
+#include "common/interrupt.h"
+#include "common/options.h"
+#include "specular_truth.h"
+#include "stations.h"
+
+namespace burnish::tools {
+namespace {
+
+struct Options {
+  BenchOptions bench;
+};
+
+struct NamedModel {
+  const char* name;
+  Material material;  ///< without its alphas
+};
+
+std::vector<NamedModel> models() {
+  Material ward;
+  ward.diffuse = Rgb::Zero();
+  ward.model = SpecularModel::ward;
+  Material balanced = ward, ashikhmin = ward, beckmann = ward;
+  balanced.model = SpecularModel::ward_balanced;
+  ashikhmin.model = SpecularModel::ashikhmin_shirley;
+  ashikhmin.fresnel.normal_reflectance = Rgb::Constant(0.5f);
+  beckmann.model = SpecularModel::cook_torrance;
+  beckmann.distribution = Distribution::beckmann;
+  beckmann.fresnel = ashikhmin.fresnel;
+  Material ggx = beckmann;
+  ggx.distribution = Distribution::ggx;
+  return {{"ward", ward},
+          {"ward-balanced", balanced},
+          {"ashikhmin", ashikhmin},
+          {"beckmann", beckmann},
+          {"ggx", ggx}};
+}
+
+struct NamedForm {
+  const char* name;
+  SpecularOptions options;
+};
+
+constexpr std::array<NamedForm, 6> kForms = {{{"paper", {SpecularForm::peak, 1, 1}},
+                                              {"peak, 9", {SpecularForm::peak, 9, 3}},
+                                              {"1", {SpecularForm::moments, 1, 3}},
+                                              {"3", {SpecularForm::moments, 3, 3}},
+                                              {"5", {SpecularForm::moments, 5, 3}},
+                                              {"9", {SpecularForm::moments, 9, 3}}}};
+constexpr std::array kViews_deg = {0.0, 30.0, 60.0, 75.0, 80.0, 85.0};
+constexpr std::array kAzimuths_deg = {3.0, 25.0, 47.0, 66.0, 88.0};
+
+/// Smooth lights all around above the surface, and a little below.
+std::vector<SphericalGaussian<double>> smooth_lights() {
+  std::vector<SphericalGaussian<double>> lights;
+  constexpr int kLights = 24;
+  constexpr double kGoldenAngle = 2.399963229728653;
+  for (int k = 0; k < kLights; ++k) {
+    const double z = 1 - (k + 0.5) / kLights * 1.6, sine = std::sqrt(1 - z * z);
+    const double azimuth = k * kGoldenAngle;
+    lights.push_back(
+        {{sine * std::cos(azimuth), sine * std::sin(azimuth), z}, k % 2 == 0 ? 12.0 : 2.0, 1.0});
+  }
+  return lights;
+}
+
+Vector3f view_direction(double polar_deg, double azimuth_deg) {
+  const double polar = polar_deg * kPi<double> / 180, azimuth = azimuth_deg * kPi<double> / 180;
+  return Vector3<double>(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
+                         std::cos(polar))
+      .cast<float>();
+}
+
+/// Errors of the forms for one view angle, over azimuths and lights.
+struct Errors {
+  double relative_rms = 0;
+  double energy = 0;  ///< relative, the worst over azimuths, with its sign
+};
+
+std::array<Errors, kForms.size()> measure_view(
+    const Material& material, double view_deg,
+    const std::vector<SphericalGaussian<double>>& lights) {
+  std::array<Errors, kForms.size()> errors;
+  std::array<double, kForms.size()> squares{};
+  double truth_squares = 0;
+  std::array<PreparedMaterial, kForms.size()> prepared;
+  for (size_t f = 0; f < kForms.size(); ++f)
+    prepared[f] = prepare_material(material, kForms[f].options);
+  for (const double azimuth_deg : kAzimuths_deg) {
+    const Vector3f outgoing = view_direction(view_deg, azimuth_deg);
+    const Reflected truth = integrate_brdf(material, outgoing, lights);
+    for (const double value : truth.by_light) truth_squares += value * value;
+    for (size_t f = 0; f < kForms.size(); ++f) {
+      std::array<SliceLobe, kMaxSpecularTeeth> slice;
+      const int count = specular_slice(prepared[f], outgoing, slice);
+      const Reflected found = integrate_slice(std::span(slice).first(static_cast<size_t>(count)),
+                                              kForms[f].options.form, lights);
+      for (size_t l = 0; l < lights.size(); ++l) {
+        const double error = found.by_light[l] - truth.by_light[l];
+        squares[f] += error * error;
+      }
+      const double energy = found.energy / truth.energy - 1;
+      if (std::abs(energy) > std::abs(errors[f].energy)) errors[f].energy = energy;
+    }
+  }
+  for (size_t f = 0; f < kForms.size(); ++f)
+    errors[f].relative_rms = std::sqrt(squares[f] / truth_squares);
+  return errors;
+}
+
+/// Rows of the slice's error and of its energy, a column an angle of view.
+void measure_slices(const NamedModel& model, std::vector<BenchRow>& rows,
+                    std::vector<BenchRow>& energies) {
+  const auto lights = smooth_lights();
+  for (const double alpha : {0.05, 0.1, 0.2, 0.3, 0.5}) {
+    for (const double anisotropy : {1.0, 3.0, 10.0}) {
+      throw_if_interrupted();
+      Material material = model.material;
+      material.alpha_x = static_cast<float>(alpha * std::sqrt(anisotropy));
+      material.alpha_y = static_cast<float>(alpha / std::sqrt(anisotropy));
+      if (material.alpha_x > kMaxAlpha) continue;
+      std::array<std::array<Errors, kForms.size()>, kViews_deg.size()> errors;
+      tbb::parallel_for(size_t{0}, kViews_deg.size(), [&](size_t v) {
+        errors[v] = measure_view(material, kViews_deg[v], lights);
+      });
+      for (size_t f = 0; f < kForms.size(); ++f) {
+        BenchRow row = {{"what", "slice"}, {"model", model.name}};
+        row["alpha"] = alpha;
+        row["anisotropy"] = anisotropy;
+        row["lobes"] = kForms[f].name;
+        BenchRow energy = row;
+        energy["what"] = "energy";
+        for (size_t v = 0; v < kViews_deg.size(); ++v) {
+          const std::string column = fmt::format("{}_deg", kViews_deg[v]);
+          row[column] = errors[v][f].relative_rms;
+          energy[column] = errors[v][f].energy;
+        }
+        rows.push_back(row);
+        energies.push_back(energy);
+      }
+    }
+  }
+}
+
+void run(const Options& options) {
+  require_writable(std::vector{options.bench.json, options.bench.csv});
+  Work work(options.bench.common());
+  std::vector<BenchRow> rows, energies;
+  for (const NamedModel& model : models()) measure_slices(model, rows, energies);
+  rows.insert(rows.end(), energies.begin(), energies.end());
+  report_bench("material", rows, options.bench, work);
+}
+
+}  // namespace
+
+std::function<void()> declare_material_bench(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  add_bench_options(app, options->bench);
+  return [options] { run(*options); };
+}
+
+}  // namespace burnish::tools
