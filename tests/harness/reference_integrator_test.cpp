@@ -284,7 +284,8 @@ TEST(ReferenceIntegrator, SpecularFurnaceReturnsTheAlbedoOfTheBrdf) {
                               .specular = Rgb::Constant(0.7f),
                               .model = model,
                               .alpha_x = 0.3f,
-                              .alpha_y = 0.12f};
+                              .alpha_y = 0.12f,
+                              .fresnel = {.normal_reflectance = Rgb::Constant(0.7f)}};
       const Vector3f outgoing =
           Vector3d(std::sin(view) * std::cos(0.4), std::sin(view) * std::sin(0.4), std::cos(view))
               .cast<float>();

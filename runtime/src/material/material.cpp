@@ -119,17 +119,4 @@ float pdf_specular_brdf(const Material& material, const Vector3f& outgoing,
   return 0;
 }
 
-HalfVectorLobes half_vector_lobes(const Material& material, int) {
-  HalfVectorLobes lobes;
-  if (material.model == SpecularModel::fitted) {
-    for (const AnisotropicGaussian<float>& lobe : material.fitted->lobes)
-      lobes.lobe[static_cast<size_t>(lobes.count++)] = lobe;
-    return lobes;
-  }
-  lobes.count = 1;
-  lobes.lobe[0].bandwidth_x = 1 / (material.alpha_x * material.alpha_x);
-  lobes.lobe[0].bandwidth_y = 1 / (material.alpha_y * material.alpha_y);
-  return lobes;
-}
-
 }  // namespace burnish
