@@ -14,8 +14,6 @@ namespace burnish {
 namespace {
 
 constexpr float kTiny = std::numeric_limits<float>::min();
-// Refractive indices: more than any material has, and squares stay in range.
-constexpr float kMaxIndex = 1000;
 
 /// Fails for a field that belongs to other models.
 void expect_of_model(const JsonPlace& root, const char* field, bool of_model, SpecularModel model) {
@@ -64,8 +62,8 @@ Fresnel read_fresnel(const JsonPlace& place) {
     return fresnel;
   }
   fresnel.model = place.has("k") ? FresnelModel::conductor : FresnelModel::dielectric;
-  fresnel.eta = read_color_or_grey(place.at("eta"), 1 / kMaxIndex, kMaxIndex);
-  if (place.has("k")) fresnel.k = read_color_or_grey(place.at("k"), 0, kMaxIndex);
+  fresnel.eta = read_color_or_grey(place.at("eta"), kMinEta, kMaxEta);
+  if (place.has("k")) fresnel.k = read_color_or_grey(place.at("k"), 0, kMaxEta);
   return fresnel;
 }
 
@@ -79,29 +77,27 @@ AnisotropicGaussian<float> read_half_vector_lobe(const JsonPlace& place) {
   return lobe;
 }
 
-/// A table over angles: two values or more.
+/// An array of some elements.
 template <class Read>
-auto read_table(const JsonPlace& root, const char* name, const Read& read) {
+auto read_sized_list(const JsonPlace& root, const char* name, size_t fewest, size_t most,
+                     const Read& read) {
   const JsonPlace place = root.at(name);
-  auto table = read_list(root, name, read);
-  if (table.size() < 2)
-    place.fail(fmt::format("has {} elements, expected 2 or more", table.size()));
-  return table;
+  place.expect_array();
+  if (const size_t size = place.value.size(); size < fewest || size > most)
+    place.fail(fmt::format("has {} elements, expected {}..{}", size, fewest, most));
+  return read_list(root, name, read);
 }
 
 std::shared_ptr<const FittedSpecular> read_fitted(const JsonPlace& place) {
   place.expect_fields({"lobes", "color_by_difference", "masking"});
   auto fitted = std::make_shared<FittedSpecular>();
-  const JsonPlace lobes = place.at("lobes");
-  fitted->lobes = read_list(place, "lobes", read_half_vector_lobe);
-  if (fitted->lobes.empty() || fitted->lobes.size() > kMaxFittedLobes)
-    lobes.fail(
-        fmt::format("has {} elements, expected 1..{}", fitted->lobes.size(), kMaxFittedLobes));
-  fitted->color_by_difference =
-      read_table(place, "color_by_difference",
-                 [](const JsonPlace& color) { return read_color_or_grey(color, 0, kMaxFloat); });
-  fitted->masking = read_table(place, "masking",
-                               [](const JsonPlace& value) { return value.float_in(0, kMaxFloat); });
+  fitted->lobes = read_sized_list(place, "lobes", 1, kMaxFittedLobes, read_half_vector_lobe);
+  fitted->color_by_difference = read_sized_list(
+      place, "color_by_difference", 2, kMaxFittedTable,
+      [](const JsonPlace& color) { return read_color_or_grey(color, 0, kMaxFloat); });
+  fitted->masking =
+      read_sized_list(place, "masking", 2, kMaxFittedTable,
+                      [](const JsonPlace& value) { return value.float_in(0, kMaxFloat); });
   return fitted;
 }
 
@@ -114,7 +110,7 @@ Material read_material(const JsonPlace& root) {
   if (only_diffuse || root.has("diffuse"))
     material.diffuse = read_color_or_grey(root.at("diffuse"), 0, 1);
   if (root.has("specular"))
-    material.specular = read_color_or_grey(root.at("specular"), 0, kMaxFloat);
+    material.specular = read_color_or_grey(root.at("specular"), 0, kMaxSpecular);
   if (has_alpha(material.model)) read_alphas(root, material);
   if (has_fresnel(material.model)) material.fresnel = read_fresnel(root.at("fresnel"));
   if (root.has("distribution"))
@@ -122,6 +118,8 @@ Material read_material(const JsonPlace& root) {
   if (root.has("shadowing"))
     material.shadowing = read_choice(root.at("shadowing"), kShadowingNames);
   if (material.model == SpecularModel::fitted) material.fitted = read_fitted(root.at("fitted"));
+  // What reads is what shades.
+  if (const std::string error = domain_error(material); !error.empty()) root.fail(error);
   return material;
 }
 

@@ -70,14 +70,27 @@ TEST(Options, NegativeNumberIsAValueAndNotAFlag) {
 
 TEST(Options, ColorTakesThreeNumbersFromZeroToOne) {
   CLI::App app;
-  Rgb color(1, 1, 1);
-  add_color(app, "--diffuse", color, "albedo");
+  std::optional<Rgb> color;
+  add_color(app, "--diffuse", color, "albedo", "the material's");
   for (const char* bad :
        {"1,1", "1,1,1,1", "1,1,", ",1,1", "1,1,1.5", "-0.1,1,1", "a,1,1", "1 1 1"})
     EXPECT_NE(parse(app, "--diffuse", bad), "") << "accepted '" << bad << "'";
-  EXPECT_TRUE((color == Rgb(1, 1, 1)).all());
+  EXPECT_FALSE(color.has_value());
   EXPECT_EQ(parse(app, "--diffuse", "0,0.5,1"), "");
-  EXPECT_TRUE((color == Rgb(0, 0.5f, 1)).all());
+  ASSERT_TRUE(color.has_value());
+  EXPECT_TRUE((*color == Rgb(0, 0.5f, 1)).all());
+  EXPECT_NE(app.help().find("(default the material's)"), std::string::npos) << app.help();
+}
+
+TEST(Options, AnOptionalNumberIsNothingUnlessGiven) {
+  CLI::App app;
+  std::optional<float> value;
+  add_number(app, "--alpha-x", "A", value, {0.25f, 1}, "roughness", "the material's");
+  EXPECT_EQ(parse(app, "--alpha-x", "2"), "--alpha-x: found '2', expected a number in 0.25..1");
+  EXPECT_FALSE(value.has_value());
+  EXPECT_EQ(parse(app, "--alpha-x", "0.5"), "");
+  EXPECT_EQ(value, 0.5f);
+  EXPECT_NE(app.help().find("0.25..1 (default the material's)"), std::string::npos) << app.help();
 }
 
 TEST(Options, ChoiceNamesWhatIsAccepted) {

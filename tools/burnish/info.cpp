@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "burnish/formats/image_file.h"
+#include "burnish/formats/json_kind.h"
 #include "burnish/formats/light_file.h"
 #include "burnish/formats/mesh_file.h"
 #include "burnish/formats/transfer_file.h"
@@ -15,6 +16,8 @@
 #include "common/options.h"
 #include "common/program.h"
 #include "harness/transfer_picture.h"
+#include "material_info.h"
+#include "material_options.h"
 
 namespace burnish::tools {
 namespace {
@@ -23,6 +26,7 @@ using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string file;
+  bool materials = false;
   bool json = false;
   std::string png;
   MeshReadOptions reading;
@@ -174,12 +178,22 @@ bool starts_as_image(const std::string& path) {
   return head == "\x76\x2f\x31\x01" || head.starts_with("#?");
 }
 
+/// A material file, or what looks like the name of a preset and is no file.
+bool is_material(const std::string& file, const std::string& extension) {
+  if (extension == ".json") return read_json_format(file) == "burnish material";
+  std::error_code ignored;
+  return extension.empty() && !std::filesystem::exists(file, ignored);
+}
+
 Json file_info(const Options& options) {
   const std::string extension = lower_extension(options.file);
   if (is_hdf5_file(options.file) || extension == ".h5")
     return transfer_info(options.file, options.png);
+  if (is_material(options.file, extension))
+    return material_info(options.file, load_named_material(options.file), options.png);
   if (!options.png.empty())
-    throw UsageError(fmt::format("--png: found {}, expected a transfer", options.file));
+    throw UsageError(
+        fmt::format("--png: found {}, expected a transfer or a material", options.file));
   if (starts_as_image(options.file) || extension == ".exr" || extension == ".hdr" ||
       extension == ".pic")
     return image_info(options.file);
@@ -227,7 +241,12 @@ void print_text(const Json& info) {
 
 void run(const Options& options) {
   require_writable(std::vector{options.png});
-  const Json info = file_info(options);
+  if (options.materials != options.file.empty())
+    throw UsageError(options.materials ? "--materials: found a FILE, too, expected one of them"
+                                       : "FILE is required");
+  if (options.materials && !options.png.empty())
+    throw UsageError("--png: found --materials, expected one material");
+  const Json info = options.materials ? presets_info() : file_info(options);
   if (options.json)
     fmt::print("{}\n", info.dump(2, ' ', false, Json::error_handler_t::replace));
   else
@@ -239,16 +258,21 @@ void run(const Options& options) {
 std::function<void()> declare_info(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   add_file(app, "FILE", "FILE", options->file,
-           "mesh (.obj .ply .off .stl), picture (.exr .hdr), transfer (.h5) or lights (.json) "
-           "(required)")
-      ->required();
+           "mesh (.obj .ply .off .stl), picture (.exr .hdr), transfer (.h5), lights or material "
+           "(.json), or the name of a preset material (required)");
+  app.add_flag("--materials", options->materials,
+               "list the preset materials in place of a file (default: not)");
   app.add_flag("--json", options->json, "print JSON, with the same fields (default: text)");
-  add_file(app, "--png", "FILE.png", options->png,
-           "of a transfer: draw octahedral maps, blue visible, red hidden. First row: the SSDFs of "
-           "eight vertices; then of each basis its mean and its leading eigen-SSDFs; then of each "
-           "ladder what lobes of bandwidth 1, 2, 4, ..., 128 see on average, and how that changes "
-           "along its leading eigenvector. At most eight bases",
-           ".png");
+  add_file(
+      app, "--png", "FILE.png", options->png,
+      "of a transfer: draw octahedral maps, blue visible, red hidden. First row: the SSDFs of "
+      "eight vertices; then of each basis its mean and its leading eigen-SSDFs; then of each "
+      "ladder what lobes of bandwidth 1, 2, 4, ..., 128 see on average, and how that changes "
+      "along its leading eigenvector. At most eight bases. Of a material: draw what a viewer sees "
+      "of its specular part, over the hemisphere from above; a row a view, 0, 30, 60 and 80 "
+      "degrees from the normal; exact, as the lobes that shading uses, and ten times the "
+      "difference",
+      ".png");
   return [options] { run(*options); };
 }
 

@@ -35,22 +35,6 @@ void add_light_options(CLI::App& app, LookOptions& options) {
              "the mesh's upward axis");
 }
 
-void add_material_options(CLI::App& app, Material& material) {
-  const Range<float> alpha_range = {kMinAlpha, kMaxAlpha};
-  add_choice(app, "--material", material.model,
-             {{"diffuse", SpecularModel::none},
-              {"ward", SpecularModel::ward},
-              {"ashikhmin", SpecularModel::ashikhmin_shirley}},
-             "reflectance model");
-  add_number(app, "--alpha-x", "A", material.alpha_x, alpha_range,
-             "roughness (slope) along the tangent");
-  add_number(app, "--alpha-y", "A", material.alpha_y, alpha_range,
-             "roughness (slope) across the tangent");
-  add_color(app, "--diffuse", material.diffuse, "diffuse albedo, linear");
-  add_color(app, "--specular", material.specular,
-            "specular scale (ward) or reflectance at normal incidence (ashikhmin), linear");
-}
-
 /// The light file's rig in the environment's frame, or one fitted to the environment.
 LightFile load_lights(const LookOptions& options, const Image& environment, Work& work,
                       nlohmann::ordered_json& report) {
@@ -92,10 +76,6 @@ void scale_map(Image& environment, float factor, const LookOptions& options) {
 }  // namespace
 
 void add_look_options(CLI::App& app, LookOptions& options) {
-  options.material.model = SpecularModel::ward;
-  options.material.specular = Rgb::Constant(0.5f);
-  options.material.alpha_x = 0.3f;
-  options.material.alpha_y = 0.03f;
   add_file(app, "FILE.h5", "FILE.h5", options.transfer, "transfer file of bake (required)")
       ->required();
   add_light_options(app, options);
@@ -125,6 +105,7 @@ Look load_look(const LookOptions& options, Work& work) {
   if (options.environment.empty() && options.lights.empty())
     throw UsageError("no light given, expected --env or --lights");
   Look look;
+  look.material = load_material(options.material).material;
   look.transfer = read_transfer(options.transfer);
   throw_if_interrupted();
   if (!look.transfer.bases.empty() && options.shading.terms > look.transfer.terms())
@@ -132,7 +113,9 @@ Look load_look(const LookOptions& options, Work& work) {
                                  options.shading.terms, look.transfer.terms(), options.transfer));
   if (!options.environment.empty()) look.environment = load_environment(options.environment, work);
 
-  look.report = {{"transfer", options.transfer}, {"environment", options.environment}};
+  look.report = {{"transfer", options.transfer},
+                 {"environment", options.environment},
+                 {"material", options.material.name}};
   LightFile lights = load_lights(options, look.environment, work, look.report);
   throw_if_interrupted();
   // A light file's own rotation and scale change lights and map alike, so that they stay the same
@@ -151,7 +134,7 @@ Look load_look(const LookOptions& options, Work& work) {
 
   const bool has_map = !look.environment.pixels.empty();
   look.specular_from_map = options.specular_from_map && has_map;
-  if (look.specular_from_map && options.material.has_specular()) {
+  if (look.specular_from_map && look.material.has_specular()) {
     const Stopwatch watch;
     look.filtered = prefilter_in_parallel(look.environment);
     look.filtered.environment_from_world = look.world_from_environment.transpose();

@@ -12,6 +12,7 @@
 #include "harness/camera.h"
 #include "harness/picture.h"
 #include "harness/reference_integrator.h"
+#include "material_options.h"
 
 namespace burnish::tools {
 
@@ -23,7 +24,7 @@ struct LookOptions {
   LightFitOptions fit;
   float rotate_deg = 0;
   UpAxis up = UpAxis::y;
-  Material material;
+  MaterialOptions material;
   bool specular_from_map = true;
   ShadingOptions shading;
   std::string camera;  ///< "ox,oy,oz,tx,ty,tz,fov"; empty: frames the mesh
@@ -35,6 +36,7 @@ void add_look_options(CLI::App& app, LookOptions& options);
 /// A baked mesh and all that lights it.
 struct Look {
   Transfer transfer;
+  Material material;
   Image environment;                       ///< no pixels without --env
   Eigen::Matrix3f world_from_environment;  ///< of `environment`
   LightRig rig;                            ///< in the world

@@ -26,7 +26,7 @@ void run(const Options& options) {
   Work work(options.common);
   const Look look = load_look(options.look, work);
   const Transfer& transfer = look.transfer;
-  const std::vector<Material> materials = {options.look.material};
+  const std::vector<Material> materials = {look.material};
   const Camera camera = look_camera(options.look, transfer, 1.5f);
 
   const Stopwatch watch;

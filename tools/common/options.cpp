@@ -28,9 +28,11 @@ std::string range_text(const Range<T>& range) {
                      range.power_of_two ? ", a power of two" : "");
 }
 
-template <class T>
+/// A number in a range, into a T or an optional one.
+template <class T, class Value>
 CLI::Option* add_real(CLI::App& app, const std::string& flags, const std::string& placeholder,
-                      T& value, const Range<T>& range, const std::string& text) {
+                      Value& value, const Range<T>& range, const std::string& text,
+                      const std::string& otherwise) {
   const std::string accepted = range_text(range);
   const auto parse = [&value, range](const std::string& found) {
     const std::optional<double> number = parse_number(found);
@@ -41,7 +43,7 @@ CLI::Option* add_real(CLI::App& app, const std::string& flags, const std::string
     return true;
   };
   return add_parsed(app, flags, placeholder,
-                    fmt::format("{}; {} (default {})", text, accepted, value),
+                    fmt::format("{}; {} (default {})", text, accepted, otherwise),
                     "a number in " + accepted, parse);
 }
 
@@ -98,12 +100,12 @@ CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::stri
 
 CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,
                         float& value, const Range<float>& range, const std::string& text) {
-  return add_real(app, flags, placeholder, value, range, text);
+  return add_real(app, flags, placeholder, value, range, text, fmt::format("{}", value));
 }
 
 CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,
                         double& value, const Range<double>& range, const std::string& text) {
-  return add_real(app, flags, placeholder, value, range, text);
+  return add_real(app, flags, placeholder, value, range, text, fmt::format("{}", value));
 }
 
 CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,
@@ -118,9 +120,14 @@ CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::stri
                     "an integer in " + accepted, parse);
 }
 
-CLI::Option* add_color(CLI::App& app, const std::string& flags, Rgb& value,
-                       const std::string& text) {
-  const std::string present = fmt::format("{},{},{}", value.x(), value.y(), value.z());
+CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,
+                        std::optional<float>& value, const Range<float>& range,
+                        const std::string& text, const std::string& otherwise) {
+  return add_real(app, flags, placeholder, value, range, text, otherwise);
+}
+
+CLI::Option* add_color(CLI::App& app, const std::string& flags, std::optional<Rgb>& value,
+                       const std::string& text, const std::string& otherwise) {
   const auto parse = [&value](const std::string& found) {
     const auto numbers = parse_numbers(found);
     if (!numbers || numbers->size() != 3) return false;
@@ -129,7 +136,7 @@ CLI::Option* add_color(CLI::App& app, const std::string& flags, Rgb& value,
     value = Eigen::Array3d((*numbers)[0], (*numbers)[1], (*numbers)[2]).cast<float>();
     return true;
   };
-  return add_parsed(app, flags, "R,G,B", fmt::format("{}; each 0..1 (default {})", text, present),
+  return add_parsed(app, flags, "R,G,B", fmt::format("{}; each 0..1 (default {})", text, otherwise),
                     "three numbers R,G,B in 0..1", parse);
 }
 

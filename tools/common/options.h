@@ -52,9 +52,15 @@ CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::stri
                         std::uint64_t& value, const std::string& text);
 /// @}
 
+/// What may be left out: nothing unless it is given. `otherwise` says in the help what then holds.
+/// @{
+CLI::Option* add_number(CLI::App& app, const std::string& flags, const std::string& placeholder,
+                        std::optional<float>& value, const Range<float>& range,
+                        const std::string& text, const std::string& otherwise);
 /// Three numbers "R,G,B", each 0..1.
-CLI::Option* add_color(CLI::App& app, const std::string& flags, Rgb& value,
-                       const std::string& text);
+CLI::Option* add_color(CLI::App& app, const std::string& flags, std::optional<Rgb>& value,
+                       const std::string& text, const std::string& otherwise);
+/// @}
 
 /// --size "WIDTHxHEIGHT" of a picture, each 1..16384 pixels.
 CLI::Option* add_size(CLI::App& app, int& width, int& height);
