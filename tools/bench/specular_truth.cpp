@@ -1,5 +1,6 @@
 #include "specular_truth.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "burnish/sphere/half_space.h"
@@ -12,6 +13,9 @@ void add(const Vector3<double>& direction, double weight,
   for (size_t l = 0; l < lights.size(); ++l) sum.by_light[l] += weight * eval(lights[l], direction);
   sum.energy += weight;
 }
+
+/// Of a bandwidth that may be 0.
+double root(float bandwidth) { return std::sqrt(std::max(double(bandwidth), 1e-6)); }
 
 }  // namespace
 
@@ -61,8 +65,8 @@ Reflected integrate_slice(std::span<const SliceLobe> slice, SpecularForm form,
     double mass = 0;
     for (int a = 0; a < kAzimuths; ++a) {
       const double azimuth = 2 * kPi<double> * (a + 0.5) / kAzimuths;
-      const double x = std::cos(azimuth) / std::sqrt(double(part.lobe.bandwidth_x));
-      const double y = std::sin(azimuth) / std::sqrt(double(part.lobe.bandwidth_y));
+      const double x = std::cos(azimuth) / root(part.lobe.bandwidth_x);
+      const double y = std::sin(azimuth) / root(part.lobe.bandwidth_y);
       const double top = -std::expm1(-1 / (x * x + y * y));
       for (int k = 0; k < kRadii; ++k) {
         const double r = std::sqrt(-std::log1p(-top * (k + 0.5) / kRadii));

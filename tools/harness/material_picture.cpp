@@ -15,7 +15,7 @@ constexpr float kDifferenceGain = 10;
 class Slice {
  public:
   Slice(const Material& material, const SpecularOptions& options)
-      : prepared_(prepare_specular(material, options)) {}
+      : prepared_(prepare_material(material, options)) {}
 
   void look_from(const Vector3f& outgoing) { count_ = specular_slice(prepared_, outgoing, lobes_); }
 
@@ -27,7 +27,7 @@ class Slice {
   }
 
  private:
-  PreparedSpecular prepared_;
+  PreparedMaterial prepared_;
   std::array<SliceLobe, kMaxSpecularTeeth> lobes_;
   int count_ = 0;
 };

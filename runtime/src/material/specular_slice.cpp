@@ -46,31 +46,39 @@ void add_teeth(const AnisotropicGaussian<float>& lobe, int taps, PreparedMateria
   cut(lobe, edge, [&](const AnisotropicGaussian<float>& tooth) { cut(tooth, edge, add); });
 }
 
-/// Two-point Gauss rule of a normal variable that is cut at 0: its probability to be positive, and
+/// Three points that stand for a normal variable where it is positive: its probability to be, and
 /// the points, in deviations from the mean of the uncut one, with their weights.
 struct CutRule {
   float probability;
-  std::array<float, 2> point, weight;
+  std::array<float, 3> point, weight;
 };
+
+/// The rule of a distribution in units of its deviation, of its mean, variance and skewness. Of the
+/// fourth moment it takes pi / 2 + skewness^2, with which the mean of |x| is that of a normal
+/// variable: BRDFs have kinks.
+CutRule three_points(float mean, float spread, float skewness, float probability) {
+  const float root = std::sqrt(2 * kPi<float> + skewness * skewness);
+  const float low = (skewness - root) / 2, high = (skewness + root) / 2;
+  const float low_weight = -1 / (low * root), high_weight = 1 / (high * root);
+  return {probability,
+          {mean + spread * low, mean, mean + spread * high},
+          {low_weight, 1 - low_weight - high_weight, high_weight}};
+}
 
 CutRule cut_rule(float mean, float deviation) {
   constexpr float kUncut = 6;  // deviations
-  if (mean >= kUncut * deviation) return {1, {-1, 1}, {0.5f, 0.5f}};
+  if (mean >= kUncut * deviation) return three_points(0, 1, 0, 1);
   const float ratio = mean / deviation;
   if (ratio <= -kUncut) return {0, {}, {}};
   const float density = std::exp(-ratio * ratio / 2) / std::sqrt(2 * kPi<float>);
   const float probability = std::erfc(-ratio / std::sqrt(2.0f)) / 2;
-  // Of x = variable / deviation where it is positive: mean, variance and skewness.
+  // Of variable / deviation, where it is positive: mean first, then variance and third moment.
   const float hazard = density / probability;
   const float first = ratio + hazard;
   const float variance = std::max(1 - hazard * first, 1e-3f);
   const float third = hazard * (first * (2 * hazard + ratio) - 1);
-  const float spread = std::sqrt(variance), skew = third / (variance * spread);
-  const float root = std::sqrt(skew * skew / 4 + 1);
-  const float low = skew / 2 - root, high = skew / 2 + root;
-  return {probability,
-          {hazard + spread * low, hazard + spread * high},
-          {high / (high - low), -low / (high - low)}};
+  const float spread = std::sqrt(variance);
+  return three_points(hazard, spread, third / (variance * spread), probability);
 }
 
 /// A half vector that stands for a part of a tooth, and the incoming direction it reflects from.
@@ -133,7 +141,7 @@ AnisotropicGaussian<float> lobe_from_covariance(const Frame<float>& frame, float
                                                 float yy) {
   const float half_difference = (xx - yy) / 2, radius = std::hypot(half_difference, xy);
   const float wide = (xx + yy) / 2 + radius;
-  constexpr float kThinnest = 1e-4f;  // ratio of variances that four nodes can tell
+  constexpr float kThinnest = 1e-4f;  // ratio of variances that a few nodes can tell
   const float narrow = std::max((xx * yy - xy * xy) / wide, kThinnest * wide);
   const float angle = 0.5f * std::atan2(xy, half_difference);
   const Vector3f major = std::cos(angle) * frame.x + std::sin(angle) * frame.y;
@@ -146,8 +154,8 @@ AnisotropicGaussian<float> lobe_from_covariance(const Frame<float>& frame, float
   return lobe;
 }
 
-/// Where four nodes of a tooth lie: sigma points of its half vectors, the first pair along the
-/// direction of the disc in which n.i changes, which is where the horizon cuts.
+/// Where the nodes of a tooth lie: points of its half vectors for the rule along the direction of
+/// the disc in which n.i changes, which is where the horizon cuts, and for two across.
 struct NodePlan {
   Eigen::Vector2f along, across;  ///< a deviation each
   CutRule rule;
@@ -170,6 +178,21 @@ NodePlan plan_nodes(const SpecularTooth& tooth, const Vector3f& o, const Vector3
   return plan;
 }
 
+constexpr size_t kMaxNodes = 9;
+
+/// Points across, in deviations, with their weights: two, or where a tooth is wide three.
+struct AcrossRule {
+  size_t count;
+  std::array<float, 3> point, weight;
+};
+
+AcrossRule across_rule(float deviation) {
+  constexpr float kWide = 0.12f;  // radians of half vectors: below, a third point tells nothing new
+  if (deviation < kWide) return {2, {-1, 1, 0}, {0.5f, 0.5f, 0}};
+  const CutRule rule = three_points(0, 1, 0, 1);
+  return {3, rule.point, rule.weight};
+}
+
 SliceLobe match_moments(const PreparedMaterial& prepared, const SpecularTooth& tooth,
                         const Vector3f& outgoing) {
   const Frame<float>& frame = tooth.lobe.frame;
@@ -177,15 +200,18 @@ SliceLobe match_moments(const PreparedMaterial& prepared, const SpecularTooth& t
   const NodePlan plan = plan_nodes(tooth, o, frame.to_local(Vector3f::UnitZ()));
   SliceLobe result;
   if (plan.rule.probability <= 0) return result;
-  std::array<Vector3f, 4> offset;
-  std::array<float, 4> share;
+  const AcrossRule across = across_rule(plan.across.norm());
+  std::array<Vector3f, kMaxNodes> offset;
+  std::array<float, kMaxNodes> share;
   Vector3f mean = Vector3f::Zero();
   float total = 0;
-  for (size_t j = 0; j < 4; ++j) {
+  const size_t count = 3 * across.count;
+  for (size_t j = 0; j < count; ++j) {
     const Eigen::Vector2f place =
-        plan.rule.point[j / 2] * plan.along + (j % 2 == 0 ? -1.0f : 1.0f) * plan.across;
+        plan.rule.point[j % 3] * plan.along + across.point[j / 3] * plan.across;
     const Node node = make_node(frame, o, outgoing, place.x(), place.y());
-    const Rgb weight = plan.rule.weight[j / 2] / 2 * node_weight(prepared, outgoing, node);
+    const Rgb weight =
+        plan.rule.weight[j % 3] * across.weight[j / 3] * node_weight(prepared, outgoing, node);
     offset[j] = node.offset;
     share[j] = weight.sum();
     result.weight += weight;
@@ -197,7 +223,7 @@ SliceLobe match_moments(const PreparedMaterial& prepared, const SpecularTooth& t
   const Vector3f axis = (2 * o.z() * frame.z - outgoing + mean).normalized();
   const Frame<float> tangent = frame_from_axis(axis);
   float xx = 0, xy = 0, yy = 0;
-  for (size_t j = 0; j < 4; ++j) {
+  for (size_t j = 0; j < count; ++j) {
     const Vector3f from_mean = offset[j] - mean;
     const float x = from_mean.dot(tangent.x), y = from_mean.dot(tangent.y), w = share[j] / total;
     xx += w * x * x, xy += w * x * y, yy += w * y * y;

@@ -16,8 +16,8 @@ enum class SpecularForm {
   /// The second derivatives at its peak; M and the cosine there, out of the integral (xu2013asg,
   /// Eq. 23-30). Nothing where the peak is below the horizon.
   peak,
-  /// The mass, mean and covariance of f times the cosine over its part above the horizon, from four
-  /// half vectors.
+  /// The mass, mean and covariance of f times the cosine over its part above the horizon, from six to
+  /// nine half vectors.
   moments,
 };
 
