@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "burnish/sphere/spherical_warp.h"
 #include "support/quadrature.h"
 
 namespace burnish {

@@ -286,5 +286,34 @@ TYPED_TEST(LobeMomentsTest, ClampedCosineIsFiniteForNeedles) {
   EXPECT_EQ(mean_clamped_cosine(needle, Vector3<T>(1, 0, 0)), 0);
 }
 
+TYPED_TEST(LobeMomentsTest, SecondMomentsAreThoseOfAllMoments) {
+  using T = TypeParam;
+  // Two independent quadratures; the errors stated for them.
+  const double tolerance = std::is_same_v<T, float> ? 3e-6 : 1e-12;
+  for (double log_x = -4; log_x < 8; log_x += 0.61) {
+    for (double log_y = -4; log_y < 8; log_y += 0.43) {
+      const T x = T(std::pow(10, log_x)), y = T(std::pow(10, log_y));
+      const AsgSecondMoments<T> found = asg_second_moments(x, y);
+      const LobeMoments<double> all = asg_moments<double>(x, y);
+      EXPECT_NEAR(found.mean_xx / all.mean_xx, 1, tolerance) << x << " " << y;
+      EXPECT_NEAR(found.mean_yy / all.mean_yy, 1, tolerance) << x << " " << y;
+      EXPECT_NEAR(found.integral / asg_integral_exact<double>(x, y), 1, tolerance) << x << " " << y;
+    }
+  }
+}
+
+TYPED_TEST(LobeMomentsTest, SecondMomentsHoldAtTheEnds) {
+  using T = TypeParam;
+  const auto uniform = asg_second_moments(T(0), T(0));  // x is uniform on the disc: E[x^2] = 1 / 4
+  EXPECT_NEAR(uniform.mean_xx, 0.25, 1e-6);
+  EXPECT_NEAR(uniform.integral, kPi<double>, 1e-5);
+  const T large = T(1e30);
+  const auto needle = asg_second_moments(large, large);
+  EXPECT_NEAR(needle.mean_xx * large, 0.5, 1e-6);
+  const auto blade = asg_second_moments(large, T(0));
+  EXPECT_NEAR(blade.mean_xx * large, 0.5, 1e-5);
+  EXPECT_NEAR(blade.mean_yy, 1.0 / 3, 1e-5);  // y is uniform in -1..1
+}
+
 }  // namespace
 }  // namespace burnish

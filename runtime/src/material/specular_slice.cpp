@@ -113,7 +113,7 @@ Node make_node(const Frame<float>& tooth, const Vector3f& local_outgoing, const 
 
 /// D(h) over the lobes that stand for it: 1 where they are exact.
 float distribution_over_lobes(const PreparedMaterial& prepared, const Vector3f& half) {
-  if (prepared.material.model == SpecularModel::fitted) return 1;
+  if (!prepared.corrects_distribution) return 1;
   float sum = 0;
   for (int k = 0; k < prepared.lobes.count; ++k)
     sum += eval(prepared.lobes.lobe[static_cast<size_t>(k)], half);
@@ -257,6 +257,10 @@ PreparedMaterial prepare_material(const Material& material,
   prepared.form = options.form;
   if (!material.has_specular()) return prepared;
   prepared.lobes = half_vector_lobes(material, options.lobes);
+  const bool has_tail =
+      material.model == SpecularModel::cook_torrance && material.distribution == Distribution::ggx;
+  prepared.corrects_distribution =
+      material.model != SpecularModel::fitted && (!has_tail || options.lobes >= kTailLobes);
   for (int k = 0; k < prepared.lobes.count; ++k)
     add_teeth(prepared.lobes.lobe[static_cast<size_t>(k)], std::clamp(options.taps, 1, kMaxTaps),
               prepared);

@@ -16,10 +16,13 @@ enum class SpecularForm {
   /// The second derivatives at its peak; M and the cosine there, out of the integral (xu2013asg,
   /// Eq. 23-30). Nothing where the peak is below the horizon.
   peak,
-  /// The mass, mean and covariance of f times the cosine over its part above the horizon, from six to
+  /// The mass, mean and covariance of f times the cosine over its part above the horizon, from six
+  /// to
   /// nine half vectors.
   moments,
 };
+
+inline constexpr int kTailLobes = 3;
 
 struct SpecularOptions {
   SpecularForm form = SpecularForm::moments;
@@ -27,7 +30,7 @@ struct SpecularOptions {
   /// accuracy; the cost is proportional. Lobes too narrow to profit stay whole. With
   /// SpecularForm::peak, 1 is the paper's method.
   int taps = 5;
-  int lobes = 3;  ///< for D(h) where its tails need several (GGX), 1..3
+  int lobes = kTailLobes;  ///< for D(h) where its tail needs several (GGX), 1..kTailLobes
 };
 
 /// A part of a material's lobe over half vectors.
@@ -46,6 +49,9 @@ struct PreparedMaterial {
   HalfVectorLobes lobes;  ///< that the teeth are cut from
   std::array<SpecularTooth, kMaxSpecularTeeth> tooth;
   int count = 0;  ///< 0: not specular
+  /// The smooth factor takes up what the lobes lack of D(h). Not where they are too few for its
+  /// tail: they have its integral, which a few half vectors would spoil.
+  bool corrects_distribution = false;
 };
 
 /// Nothing is allocated or thrown.
