@@ -193,14 +193,14 @@ std::vector<LobeFit> fit_half_vector_table(const Material& model, const LobeFit&
   return table;
 }
 
-FitError fit_error(const Material& material,
-                   const std::vector<AnisotropicGaussian<double>>& lobes) {
+FitError fit_error(const Material& material, const HalfVectorLobes& lobes) {
   double difference = 0, square = 0, projected_difference = 0, projected_square = 0;
   double energy = 0, lobes_energy = 0;
   for (const Node& node : hemisphere_nodes(material.alpha_x, material.alpha_y)) {
     const double d = published_distribution(material, node.direction), z = node.direction.z();
     double sum = 0;
-    for (const AnisotropicGaussian<double>& lobe : lobes) sum += eval(lobe, node.direction);
+    for (size_t k = 0; k < static_cast<size_t>(lobes.count); ++k)
+      sum += double(eval(lobes.lobe[k], node.direction.cast<float>().eval()));
     difference += node.weight * (sum - d) * (sum - d);
     square += node.weight * d * d;
     projected_difference += node.weight * z * (sum - d) * (sum - d);

@@ -23,7 +23,7 @@ struct FitError {
   double projected_l2 = 0;  ///< the same with weight h.z
   double energy = 1;        ///< ratio of the integrals of D h.z
 };
-FitError fit_error(const Material& material, const std::vector<AnisotropicGaussian<double>>& lobes);
+FitError fit_error(const Material& material, const HalfVectorLobes& lobes);
 
 /// The fit that a search from `start` finds: least squares of weight h.z, bandwidths and amplitudes
 /// >= 0, the integral of D h.z exact.

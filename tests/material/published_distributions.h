@@ -48,7 +48,7 @@ inline std::vector<Node> hemisphere_nodes(double alpha_x, double alpha_y, int az
     double from = 0, to = alpha / 4;
     while (from < kPi<double> / 2) {
       if (to > 0.8 * kPi<double> / 2) to = kPi<double> / 2;
-      for (const auto& [theta, weight] : gauss_legendre(6, from, to)) {
+      for (const auto& [theta, weight] : gauss_legendre(10, from, to)) {
         const double sine = std::sin(theta);
         for (const double sign_x : {-1, 1})
           for (const double sign_y : {-1, 1})

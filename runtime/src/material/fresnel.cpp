@@ -27,7 +27,7 @@ float dielectric(float eta, float c) {
 /// The same for a complex index: a + i b = sqrt((eta + i k)^2 - sin^2). All terms are positive.
 float conductor(float eta, float k, float c) {
   const float sine2 = (1 - c) * (1 + c);
-  const float real = (eta - k) * (eta + k) - sine2, imaginary = 2 * eta * k;
+  const float real = (eta - 1) * (eta + 1) - k * k + c * c, imaginary = 2 * eta * k;
   const float length = std::hypot(real, imaginary);
   // a^2 and b^2; the smaller from their product, (eta k)^2, since the difference would cancel.
   const float large = (length + std::abs(real)) / 2;
