@@ -25,7 +25,8 @@ float exponent(const Microfacets& facets) { return 2 / (facets.alpha_x * facets.
 
 /// The slope's standard deviation toward a direction times its sine (and times sqrt 2).
 float slope_width(const Microfacets& facets, const Vector3f& direction) {
-  return std::hypot(facets.alpha_x * direction.x(), facets.alpha_y * direction.y());
+  const float x = facets.alpha_x * direction.x(), y = facets.alpha_y * direction.y();
+  return std::sqrt(x * x + y * y);
 }
 
 Vector3f sample_beckmann_half(const Microfacets& facets, float u, float v) {
@@ -86,7 +87,8 @@ float eval_microfacet_lobe(const Microfacets& facets, const Vector3f& half) {
 
 float facing_area(const Microfacets& facets, const Vector3f& direction) {
   const float cosine = direction.z(), width = slope_width(facets, direction);
-  if (facets.distribution == Distribution::ggx) return (cosine + std::hypot(cosine, width)) / 2;
+  if (facets.distribution == Distribution::ggx)
+    return (cosine + std::sqrt(cosine * cosine + width * width)) / 2;
   // cos (1 + Lambda) with Lambda's difference of exp and erfc written as a sum.
   const float a = cosine / std::max(width, std::numeric_limits<float>::min());
   return cosine * (1 + std::erf(a)) / 2 + width * std::exp(-a * a) / (2 * std::sqrt(kPi<float>));
