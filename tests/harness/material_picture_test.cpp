@@ -20,7 +20,7 @@ TEST(SliceErrors, MatchAGridOfDirections) {
   const Material material = glossy();
   const std::vector<SliceError> errors = slice_errors(material, {});
   ASSERT_EQ(errors.size(), kLobeViewsDeg.size());
-  const PreparedSpecular prepared = prepare_specular(material, {});
+  const PreparedMaterial prepared = prepare_material(material, {});
   for (size_t view = 0; view < errors.size(); ++view) {
     const double polar = kLobeViewsDeg[view] * kPi<double> / 180;
     const double azimuth = kLobeViewAzimuthDeg * kPi<double> / 180;
