@@ -158,6 +158,7 @@ int refine_lobes(const LightFitTarget& target, const LobeLimits& limits, int max
   problem.AddResidualBlock(&cost, nullptr, blocks);
   for (LobeShape& shape : shapes) {
     problem.SetManifold(shape.rotation.coeffs().data(), &manifold);
+    if (limits.fixed_axes) problem.SetParameterBlockConstant(shape.rotation.coeffs().data());
     if (limits.isotropic) problem.SetManifold(shape.log_bandwidth.data(), &equal);
     for (int i = 0; i < 2; ++i) {
       shape.log_bandwidth[i] = std::clamp(shape.log_bandwidth[i], std::log(limits.min_bandwidth),

@@ -13,7 +13,8 @@ using LightFitResidual = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 /// What shapes the lobes may have.
 struct LobeLimits {
   double min_bandwidth, max_bandwidth;
-  bool isotropic = false;  ///< equal bandwidths
+  bool isotropic = false;   ///< equal bandwidths
+  bool fixed_axes = false;  ///< frames stay as they are
 };
 
 /// Direction `i` of `count` that are spread evenly over the sphere.
