@@ -32,6 +32,7 @@ TEST(Failure, MissingInputIsExitTwoAndNamesTheFile) {
       {"info", "gone.exr"},
       {"info", "gone.json"},
       {"fit-light", "gone.exr", "-o", "a.json"},
+      {"fit-brdf", "gone.bsdf", "-o", "a.json"},
       {"render", "gone.h5", "--env", "studio", "--png", "a.png"},
       {"shade", "gone.h5", "--env", "studio", "-o", "a.ply"},
   };

@@ -20,6 +20,7 @@ const std::vector<Case>& all_commands() {
       {BURNISH_PROGRAM, "burnish", {"bake"}},
       {BURNISH_PROGRAM, "burnish", {"info"}},
       {BURNISH_PROGRAM, "burnish", {"fit-light"}},
+      {BURNISH_PROGRAM, "burnish", {"fit-brdf"}},
       {BURNISH_PROGRAM, "burnish", {"render"}},
       {BURNISH_PROGRAM, "burnish", {"shade"}},
       {BURNISH_PROGRAM, "burnish", {"demo"}},
@@ -123,8 +124,8 @@ TEST(Usage, UnknownCommandNamesTheKnownOnes) {
   const RunResult result = burnish({"frobnicate"});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.err,
-            "burnish: unknown command 'frobnicate', expected one of bake info fit-light render "
-            "shade demo\n");
+            "burnish: unknown command 'frobnicate', expected one of bake info fit-light fit-brdf "
+            "render shade demo\n");
 }
 
 TEST(Usage, ValuesOutOfRangeNameTheRange) {
@@ -144,6 +145,8 @@ TEST(Usage, ContradictionsAreRefusedBeforeAnyFileIsRead) {
       {"bake", "a.obj", "-o", "a.h5", "--resume", "--restart"},
       {"bake", "a.obj", "-o", "a.h5", "--directions", "64", "--resolution", "128"},
       {"fit-light", "-o", "a.json"},          // no environment
+      {"fit-brdf", "-o", "a.json"},           // no measurement
+      {"fit-brdf", "a.bsdf", "-o", "a.png"},  // not .json
       {"render", "a.h5", "--env", "studio"},  // no output
       {"render", "a.h5", "--png", "a.png"},   // no light
       {"render", "a.h5", "--env", "studio", "--png", "a.png", "--compare", "b.png"},

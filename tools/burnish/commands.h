@@ -8,6 +8,7 @@ namespace burnish::tools {
 std::function<void()> declare_bake(CLI::App& app);
 std::function<void()> declare_info(CLI::App& app);
 std::function<void()> declare_fit_light(CLI::App& app);
+std::function<void()> declare_fit_brdf(CLI::App& app);
 std::function<void()> declare_render(CLI::App& app);
 std::function<void()> declare_shade(CLI::App& app);
 std::function<void()> declare_demo(CLI::App& app);

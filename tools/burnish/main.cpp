@@ -9,6 +9,7 @@ int main(int argc, char** argv) {
       Command{"info", "say what is in a mesh, picture, transfer or light file", declare_info},
       Command{"fit-light", "fit anisotropic Gaussian lights to an environment map",
               declare_fit_light},
+      Command{"fit-brdf", "fit a material to a measured BRDF", declare_fit_brdf},
       Command{"render", "draw a baked mesh under an environment, and the truth beside it",
               declare_render},
       Command{"shade", "write the radiance of every vertex as PLY", declare_shade},
