@@ -248,6 +248,17 @@ SliceLobe at_peak(const PreparedMaterial& prepared, const SpecularTooth& tooth,
   return result;
 }
 
+/// D(h) of Ward's and Ashikhmin's models as xu2013asg take it, section 5.2. The paper fits others.
+HalfVectorLobes paper_lobes(const Material& material, int max_lobes) {
+  if (material.model != SpecularModel::ward && material.model != SpecularModel::ashikhmin_shirley)
+    return half_vector_lobes(material, max_lobes);
+  HalfVectorLobes lobes;
+  lobes.count = 1;
+  lobes.lobe[0].bandwidth_x = 1 / (material.alpha_x * material.alpha_x);
+  lobes.lobe[0].bandwidth_y = 1 / (material.alpha_y * material.alpha_y);
+  return lobes;
+}
+
 }  // namespace
 
 PreparedMaterial prepare_material(const Material& material,
@@ -256,7 +267,8 @@ PreparedMaterial prepare_material(const Material& material,
   prepared.material = material;
   prepared.form = options.form;
   if (!material.has_specular()) return prepared;
-  prepared.lobes = half_vector_lobes(material, options.lobes);
+  prepared.lobes = options.form == SpecularForm::peak ? paper_lobes(material, options.lobes)
+                                                      : half_vector_lobes(material, options.lobes);
   const bool has_tail =
       material.model == SpecularModel::cook_torrance && material.distribution == Distribution::ggx;
   prepared.corrects_distribution =
