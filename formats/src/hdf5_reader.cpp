@@ -189,6 +189,14 @@ void Hdf5Reader::check_path(const std::string& name) const {
   }
 }
 
+bool Hdf5Reader::has(const char* name) const {
+  const std::string path = name;
+  check_path(path.substr(0, path.rfind('/')));
+  const htri_t exists = H5Lexists(file_.get(), name, H5P_DEFAULT);
+  if (exists < 0) fail(name, "damaged on the way to it: " + hdf5_reason());
+  return exists > 0;
+}
+
 Hdf5Id Hdf5Reader::open_attribute(const std::string& object, const char* name) const {
   if (object != "/") check_path(object);
   const htri_t exists = H5Aexists_by_name(file_.get(), object.c_str(), name, H5P_DEFAULT);

@@ -39,6 +39,8 @@ class Hdf5Reader {
 
   [[noreturn]] void fail(const std::string& place, const std::string& message) const;
 
+  /// Whether there is a member of this name in a group that must be there.
+  bool has(const char* name) const;
   /// `shape` has the expected extents, or kAnyExtent; `types` what is accepted.
   Hdf5Dataset open(const char* name, const std::vector<const Hdf5Type*>& types,
                    const std::vector<hsize_t>& shape) const;

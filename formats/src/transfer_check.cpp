@@ -35,7 +35,8 @@ struct TransferChecker {
            fmt::format("{}, expected a finite number", *bad));
   }
 
-  void check_points(const char* path, const std::vector<Vector3f>& points) const {
+  template <class Vector>
+  void check_points(const char* path, const std::vector<Vector>& points) const {
     for (size_t i = 0; i < points.size(); ++i)
       if (!points[i].allFinite()) fail(fmt::format("{}[{}]", path, i), "not finite");
   }
@@ -66,6 +67,9 @@ struct TransferChecker {
     check_count(transfer_path::kTangents, transfer.tangents.size(), vertices);
     check_count(transfer_path::kFileVertex, transfer.file_vertex.size(), vertices);
     check_points(transfer_path::kPositions, transfer.positions);
+    if (!transfer.texcoords.empty())
+      check_count(transfer_path::kTexcoords, transfer.texcoords.size(), vertices);
+    check_points(transfer_path::kTexcoords, transfer.texcoords);
     check_units(transfer_path::kNormals, transfer.normals);
     check_units(transfer_path::kTangents, transfer.tangents);
     for (size_t i = 0; i < vertices; ++i) {

@@ -17,6 +17,7 @@ namespace transfer_path {
 inline constexpr const char* kPositions = "/mesh/positions";
 inline constexpr const char* kNormals = "/mesh/normals";
 inline constexpr const char* kTangents = "/mesh/tangents";
+inline constexpr const char* kTexcoords = "/mesh/texcoords";
 inline constexpr const char* kFileVertex = "/mesh/file_vertex";
 inline constexpr const char* kTriangles = "/mesh/triangles";
 inline constexpr const char* kParts = "/mesh/parts";
@@ -44,6 +45,7 @@ inline constexpr const char* kLadderErrors = "/provenance/ladder_errors";
 inline constexpr const char* kScaleFactor = "scale_factor";
 
 static_assert(sizeof(Vector3f) == 3 * sizeof(float), "vectors are stored as rows of floats");
+static_assert(sizeof(Vector2<float>) == 2 * sizeof(float));
 static_assert(sizeof(Triangle) == 3 * sizeof(std::uint32_t));
 static_assert(sizeof(LobeError) == 2 * sizeof(double));
 

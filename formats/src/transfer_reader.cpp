@@ -63,6 +63,9 @@ class TransferReader {
     transfer_.file_vertex = reader_.read<std::uint32_t>(transfer_path::kFileVertex, {vertices_});
     transfer_.triangles = read_triangles(transfer_path::kTriangles);
     if (version_ >= 2) read_parts();
+    if (version_ >= 2 && reader_.has(transfer_path::kTexcoords))
+      transfer_.texcoords =
+          reader_.read<float, Vector2<float>>(transfer_path::kTexcoords, {vertices_, 2});
     transfer_.occluder_positions = read_points(transfer_path::kOccluderPositions, kAnyExtent);
     transfer_.occluder_triangles = read_triangles(transfer_path::kOccluderTriangles);
   }

@@ -77,6 +77,9 @@ class TransferWriter {
     writer_.array(transfer_path::kFileVertex, {transfer_.file_vertex.size()},
                   transfer_.file_vertex);
     write_triangles(transfer_path::kTriangles, transfer_.triangles);
+    if (!transfer_.texcoords.empty())
+      writer_.dataset(transfer_path::kTexcoords, Hdf5Type::of<float>(),
+                      {transfer_.texcoords.size(), 2}, transfer_.texcoords.data());
     write_parts();
     writer_.group("/occluders");
     write_points(transfer_path::kOccluderPositions, transfer_.occluder_positions);

@@ -346,6 +346,7 @@ void Bake::copy_meshes() {
   transfer_.tangents = receiver_.tangents;
   transfer_.file_vertex = receiver_.file_vertex;
   transfer_.triangles = receiver_.triangles;
+  transfer_.texcoords = receiver_.uvs;
   make_storable(transfer_);
   transfer_.parts = receiver_.parts;
   if (transfer_.parts.empty())

@@ -85,6 +85,7 @@ void check_receiver(const TriangleMesh& mesh) {
   check("normals", mesh.normals.size());
   check("tangents", mesh.tangents.size());
   check("file vertex numbers", mesh.file_vertex.size());
+  if (!mesh.uvs.empty()) check("UVs", mesh.uvs.size());
 }
 
 std::vector<Vector3f> usable_normals(const TriangleMesh& mesh) {
@@ -105,6 +106,8 @@ void make_storable(Transfer& transfer) {
     Vector3f& normal = transfer.normals[i];
     Vector3f& tangent = transfer.tangents[i];
     if (!transfer.positions[i].allFinite()) transfer.positions[i].setZero();
+    if (!transfer.texcoords.empty() && !transfer.texcoords[i].allFinite())
+      transfer.texcoords[i].setZero();
     if (!is_unit(normal)) {
       const double length = normal.cast<double>().norm();
       normal = length > 0 && std::isfinite(length)

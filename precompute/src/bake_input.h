@@ -22,8 +22,8 @@ std::string receiver_name(const TriangleMesh& mesh);
 /// Unit normals; zero where a vertex cannot be baked.
 std::vector<Vector3f> usable_normals(const TriangleMesh& mesh);
 
-/// Repairs what a transfer cannot hold: positions that are not finite become 0, and normals and
-/// tangents unit and orthogonal. What is good stays as it is.
+/// Repairs what a transfer cannot hold: positions and UVs that are not finite become 0, and normals
+/// and tangents unit and orthogonal. What is good stays as it is.
 void make_storable(Transfer& transfer);
 
 /// Disjoint sets of usable vertices, each in rising order.

@@ -85,6 +85,36 @@ std::function<void(OpenedFile&)> ranges(const std::vector<std::uint32_t>& values
   return [=](OpenedFile& f) { f.replace("/mesh/parts/ranges", {3, 4}, values); };
 }
 
+/// Texture coordinates may be missing, but not be wrong.
+TEST(DamagedTransfer, RejectsTextureCoordinates) {
+  const TemporaryFolder folder;
+  const std::string path = folder.file("a.h5");
+  const auto write = [&] { write_transfer(random_transfer(1, {.texcoords = true}), path); };
+  write();
+  EXPECT_EQ(read_transfer(path).texcoords.size(), 40u);
+  OpenedFile(path).remove("/mesh/texcoords");
+  EXPECT_TRUE(read_transfer(path).texcoords.empty());
+  const auto rejects = [&](const std::vector<hsize_t>& shape, const auto& values,
+                           const char* cause) {
+    write();
+    OpenedFile(path).replace("/mesh/texcoords", shape, values);
+    const std::string error = read_error(path);
+    EXPECT_EQ(error.rfind(path + ": /mesh/texcoords", 0), 0u) << error;
+    EXPECT_NE(error.find(cause), std::string::npos) << error;
+  };
+  rejects({39, 2}, std::vector<float>(78), "expected 40");
+  rejects({40, 3}, std::vector<float>(120), "expected 2");
+  rejects({40, 2}, std::vector<std::uint32_t>(80), "another type");
+  rejects({40, 2}, std::vector<float>(80, kNan), "not finite");
+  write();
+  {
+    OpenedFile file(path);
+    file.remove("/mesh/texcoords");
+    H5Lcreate_soft("/mesh/normals", file.id, "/mesh/texcoords", H5P_DEFAULT, H5P_DEFAULT);
+  }
+  EXPECT_NE(read_error(path).find("is a link"), std::string::npos);
+}
+
 TEST(DamagedTransfer, RejectsMeshes) {
   expect_rejected({
       {"/mesh/positions", "has 1 dimensions, expected 2",

@@ -18,6 +18,7 @@ struct TransferSize {
   float amplitude_rad = 0;
   int ladder_bases = 0, ladder_bands = 4, ladder_terms = 5;
   size_t parts = 0;
+  bool texcoords = false;
 };
 
 inline Vector3f random_vector(std::mt19937& random, float scale) {
@@ -140,6 +141,9 @@ inline Transfer random_transfer(unsigned seed, const TransferSize& size = {}) {
     transfer.ladder_crossover = 16;
   }
   cut_into_parts(transfer, size.parts);
+  if (size.texcoords)
+    for (size_t i = 0; i < size.vertices; ++i)
+      transfer.texcoords.push_back(random_vector(random, 3).head<2>());
   return transfer;
 }
 
@@ -195,6 +199,7 @@ inline std::string first_difference(const Transfer& a, const Transfer& b) {
   if (a.tangents != b.tangents) return "tangents";
   if (a.file_vertex != b.file_vertex) return "file_vertex";
   if (a.triangles != b.triangles) return "triangles";
+  if (a.texcoords != b.texcoords) return "texcoords";
   if (!equal_lists(a.parts, b.parts, equal_parts)) return "parts";
   if (!equal_lists(a.bases, b.bases, equal_bases)) return "bases";
   if (a.basis_id != b.basis_id) return "basis_id";

@@ -40,7 +40,7 @@ TEST(TransferFile, ReadsBackWhatWasWritten) {
        .parts = 1},
       {.amplitude_rad = 1.5f, .ladder_bases = 2, .ladder_bands = 16, .parts = 5},
       {.bases = 3, .ladder_bases = 1},
-      {.bases = 0, .parts = 2},
+      {.bases = 0, .parts = 2, .texcoords = true},
       // More than one chunk (of 1 MiB) of all that has many values.
       {.vertices = 90000,
        .triangles = 100000,
@@ -50,7 +50,8 @@ TEST(TransferFile, ReadsBackWhatWasWritten) {
        .ladder_bases = 2,
        .ladder_bands = 16,
        .ladder_terms = 20,
-       .parts = 2}};
+       .parts = 2,
+       .texcoords = true}};
   for (const TransferSize& size : sizes) {
     for (const int level : {0, 4, 9}) {
       if (size.vertices > 1000 && level == 9) continue;  // slow, and nothing new
@@ -300,6 +301,11 @@ TEST(TransferFile, WriterRejectsAnInvalidTransfer) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   rejects("/mesh/positions", [](Transfer& t) { t = {}; });
   rejects("/mesh/normals[3]", [](Transfer& t) { t.normals[3] *= 1.01f; });
+  rejects("/mesh/texcoords", [](Transfer& t) { t.texcoords.resize(39, {0, 0}); });
+  rejects("/mesh/texcoords[2]", [=](Transfer& t) {
+    t.texcoords.resize(40, {0, 0});
+    t.texcoords[2].y() = nan;
+  });
   rejects("/mesh/parts/ranges[2]", [](Transfer& t) { t.parts[1].vertices = 1; });
   rejects("/mesh/parts/names[2]", [](Transfer& t) { t.parts[2].name.push_back('\0'); });
   rejects("/mesh/parts/names[0]", [](Transfer& t) { t.parts[0].name.assign(4097, 'x'); });

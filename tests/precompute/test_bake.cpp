@@ -360,6 +360,18 @@ TEST(Bake, ProvenanceTellsWhatWasBaked) {
   EXPECT_NE(bake(mesh, {}, kSmall).provenance.mesh_hash, provenance.mesh_hash);
 }
 
+TEST(Bake, TextureCoordinatesComeAlong) {
+  TriangleMesh mesh = test::make_disc({0, 0, 0}, 1, 5);
+  EXPECT_TRUE(bake(mesh, {}, kSmall).texcoords.empty());
+  for (const Vector3f& position : mesh.positions)
+    mesh.uvs.emplace_back(position.x(), 1 - position.y());
+  EXPECT_EQ(bake(mesh, {}, kSmall).texcoords, mesh.uvs);
+  std::vector<Eigen::Vector2f> expected = mesh.uvs;
+  expected[2].setZero();
+  mesh.uvs[2].x() = std::numeric_limits<float>::infinity();
+  EXPECT_EQ(bake(mesh, {}, kSmall).texcoords, expected);
+}
+
 TEST(Bake, UnusableVerticesAreLeftOut) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const TriangleMesh mesh = make_scene();
@@ -485,6 +497,7 @@ TEST(Bake, RejectsMeshesItCannotUse) {
   expect_rejected([](TriangleMesh& m) { m.normals.pop_back(); });
   expect_rejected([](TriangleMesh& m) { m.tangents.pop_back(); });
   expect_rejected([](TriangleMesh& m) { m.file_vertex.pop_back(); });
+  expect_rejected([](TriangleMesh& m) { m.uvs.resize(3); });
   expect_rejected([](TriangleMesh& m) { m.triangles[0][1] = 6; });
   expect_rejected([](TriangleMesh& m) {
     for (Vector3f& n : m.normals) n.setZero();

@@ -141,6 +141,7 @@ Json transfer_info(const std::string& path, const std::string& png) {
   info["vertices"] = transfer.vertex_count();
   info["triangles"] = transfer.triangles.size();
   info["occluder_triangles"] = transfer.occluder_triangles.size();
+  info["has_uvs"] = !transfer.texcoords.empty();
   info["parts"] = parts_json(transfer.parts);
   add_visibility(transfer, info);
   add_provenance(transfer.provenance, info);

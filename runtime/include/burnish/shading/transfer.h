@@ -74,6 +74,8 @@ struct Transfer {
   std::vector<std::uint32_t>
       file_vertex;                  ///< #V, index of the vertex in its mesh file; 2^32 - 1: in none
   std::vector<Triangle> triangles;  ///< #F
+  /// #V, or empty: UV coordinates, u to the right and v up in a texture.
+  std::vector<Vector2<float>> texcoords;
 
   std::vector<MeshPart> parts;  ///< in order, without gaps; none: one nameless part
 
