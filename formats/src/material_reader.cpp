@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "burnish/formats/error.h"
 #include "burnish/formats/material_file.h"
 #include "burnish/formats/material_names.h"
 #include "burnish/material/roughness.h"
@@ -25,7 +26,7 @@ void expect_of_model(const JsonPlace& root, const char* field, bool of_model, Sp
 void expect_fields_of(const JsonPlace& root, SpecularModel model) {
   const bool microfacets = model == SpecularModel::cook_torrance;
   expect_of_model(root, "specular", model != SpecularModel::none, model);
-  for (const char* field : {"alpha", "alpha_x", "alpha_y", "roughness"})
+  for (const char* field : {"alpha", "alpha_x", "alpha_y", "roughness", "tangent_rotation_rad"})
     expect_of_model(root, field, has_alpha(model), model);
   expect_of_model(root, "fresnel", has_fresnel(model), model);
   expect_of_model(root, "distribution", microfacets, model);
@@ -33,22 +34,70 @@ void expect_fields_of(const JsonPlace& root, SpecularModel model) {
   expect_of_model(root, "fitted", model == SpecularModel::fitted, model);
 }
 
-void read_alphas(const JsonPlace& root, Material& material) {
+/// A field that may be a texture: "texture" and, unless it has its own meaning, scale and offset.
+std::optional<TextureFile> read_texture_of(const JsonPlace& root, const char* field,
+                                           bool may_scale = true) {
+  if (!root.has(field) || !root.at(field).value.is_object()) return {};
+  const JsonPlace place = root.at(field);
+  if (may_scale)
+    place.expect_fields({"texture", "scale", "offset"});
+  else
+    place.expect_fields({"texture"});
+  TextureFile texture;
+  texture.file = place.at("texture").string();
+  if (texture.file.empty()) place.at("texture").fail("empty, expected a picture file");
+  if (place.has("scale")) texture.scale = place.at("scale").float_in(-kMaxFloat, kMaxFloat);
+  if (place.has("offset")) texture.offset = place.at("offset").float_in(-kMaxFloat, kMaxFloat);
+  return texture;
+}
+
+/// A field that is always a texture.
+std::optional<TextureFile> require_texture_of(const JsonPlace& root, const char* field,
+                                              bool may_scale) {
+  if (!root.has(field)) return {};
+  if (!root.at(field).value.is_object())
+    root.at(field).fail(
+        fmt::format("is {}, expected an object with a texture", root.at(field).value.type_name()));
+  return read_texture_of(root, field, may_scale);
+}
+
+void read_colors(const JsonPlace& root, MaterialFile& file) {
+  Material& material = file.material;
+  material.diffuse = Rgb::Zero();
+  file.textures.diffuse = read_texture_of(root, "diffuse");
+  file.textures.specular = read_texture_of(root, "specular");
+  if (file.textures.diffuse)
+    material.diffuse = Material().diffuse;
+  else if (material.model == SpecularModel::none || root.has("diffuse"))
+    material.diffuse = read_color_or_grey(root.at("diffuse"), 0, 1);
+  if (root.has("specular") && !file.textures.specular)
+    material.specular = read_color_or_grey(root.at("specular"), 0, kMaxSpecular);
+}
+
+void read_alphas(const JsonPlace& root, MaterialFile& file) {
+  Material& material = file.material;
+  MaterialTextures& textures = file.textures;
   const bool by_axis = root.has("alpha_x") || root.has("alpha_y");
   if (root.has("alpha") + root.has("roughness") + by_axis != 1)
     root.fail("expected one of 'alpha', 'roughness', and 'alpha_x' with 'alpha_y'");
-  const auto alpha = [&](const char* field) {
-    return root.at(field).float_in(kMinAlpha, kMaxAlpha);
+  const auto read = [&](const char* field, std::optional<TextureFile>& texture, float& alpha) {
+    texture = read_texture_of(root, field);
+    if (!texture) alpha = root.at(field).float_in(kMinAlpha, kMaxAlpha);
   };
   if (by_axis) {
-    material.alpha_x = alpha("alpha_x");
-    material.alpha_y = alpha("alpha_y");
+    read("alpha_x", textures.alpha_x, material.alpha_x);
+    read("alpha_y", textures.alpha_y, material.alpha_y);
     return;
   }
-  material.alpha_x =
-      root.has("alpha")
-          ? alpha("alpha")
-          : alpha_from_roughness(root.at("roughness").float_in(kMinRoughness, kMaxRoughness));
+  if (root.has("alpha")) {
+    read("alpha", textures.alpha_x, material.alpha_x);
+    textures.alpha_y = textures.alpha_x;
+  } else {
+    textures.roughness = read_texture_of(root, "roughness");
+    if (!textures.roughness)
+      material.alpha_x =
+          alpha_from_roughness(root.at("roughness").float_in(kMinRoughness, kMaxRoughness));
+  }
   material.alpha_y = material.alpha_x;
 }
 
@@ -101,17 +150,12 @@ std::shared_ptr<const FittedSpecular> read_fitted(const JsonPlace& place) {
   return fitted;
 }
 
-Material read_material(const JsonPlace& root) {
-  Material material;
+void read_model(const JsonPlace& root, MaterialFile& file) {
+  Material& material = file.material;
   material.model = read_choice(root.at("model"), kSpecularModelNames);
   expect_fields_of(root, material.model);
-  const bool only_diffuse = material.model == SpecularModel::none;
-  material.diffuse = Rgb::Zero();
-  if (only_diffuse || root.has("diffuse"))
-    material.diffuse = read_color_or_grey(root.at("diffuse"), 0, 1);
-  if (root.has("specular"))
-    material.specular = read_color_or_grey(root.at("specular"), 0, kMaxSpecular);
-  if (has_alpha(material.model)) read_alphas(root, material);
+  read_colors(root, file);
+  if (has_alpha(material.model)) read_alphas(root, file);
   if (has_fresnel(material.model)) material.fresnel = read_fresnel(root.at("fresnel"));
   if (root.has("distribution"))
     material.distribution = read_choice(root.at("distribution"), kDistributionNames);
@@ -120,7 +164,6 @@ Material read_material(const JsonPlace& root) {
   if (material.model == SpecularModel::fitted) material.fitted = read_fitted(root.at("fitted"));
   // What reads is what shades.
   if (const std::string error = domain_error(material); !error.empty()) root.fail(error);
-  return material;
 }
 
 }  // namespace
@@ -131,12 +174,20 @@ MaterialFile parse_material(std::string_view json, const std::string& subject) {
   read_format_version(root, kMaterialFormat);
   root.expect_fields({"format", "format_version", "name", "source", "fit_relative_l2", "model",
                       "diffuse", "specular", "alpha", "alpha_x", "alpha_y", "roughness", "fresnel",
-                      "distribution", "shadowing", "fitted"});
+                      "distribution", "shadowing", "fitted", "tangent_rotation_rad", "normal",
+                      "wrap"});
   MaterialFile file;
   if (root.has("name")) file.name = root.at("name").string();
   if (root.has("source")) file.source = root.at("source").string();
   file.fit_relative_l2 = read_fit_error(root, "fit_relative_l2");
-  file.material = read_material(root);
+  read_model(root, file);
+  MaterialTextures& textures = file.textures;
+  textures.tangent_rotation_rad = require_texture_of(root, "tangent_rotation_rad", true);
+  textures.normal = require_texture_of(root, "normal", false);
+  if (root.has("wrap")) {
+    if (textures.empty()) root.at("wrap").fail("without a texture");
+    textures.wrap = read_choice(root.at("wrap"), kTextureWrapNames);
+  }
   return file;
 }
 
@@ -144,6 +195,11 @@ MaterialFile read_material_file(const std::string& path) {
   return parse_material(read_file_bytes(path), path);
 }
 
-Material read_material(const std::string& path) { return read_material_file(path).material; }
+Material read_material(const std::string& path) {
+  const MaterialFile file = read_material_file(path);
+  if (!file.textures.empty())
+    throw Error(ErrorKind::unsupported, path, "has textures, expected one material everywhere");
+  return file.material;
+}
 
 }  // namespace burnish

@@ -39,6 +39,13 @@ std::string format_fitted(const FittedSpecular& fitted) {
          format_list("masking", fitted.masking, number, "    ") + "\n  }";
 }
 
+std::string format_texture(const TextureFile& texture) {
+  std::string text = fmt::format("{{\"texture\": {}", json_string(texture.file));
+  if (texture.scale != 1) text += fmt::format(", \"scale\": {}", texture.scale);
+  if (texture.offset != 0) text += fmt::format(", \"offset\": {}", texture.offset);
+  return text + "}";
+}
+
 /// The fields of the model, as "name": text.
 std::vector<std::string> format_fields(const MaterialFile& file) {
   const Material& material = file.material;
@@ -53,12 +60,25 @@ std::vector<std::string> format_fields(const MaterialFile& file) {
   add("source", json_string(file.source));
   if (file.fit_relative_l2) add("fit_relative_l2", fmt::format("{}", *file.fit_relative_l2));
   add_name("model", name_of(kSpecularModelNames, material.model));
-  add("diffuse", format_vector(material.diffuse));
-  if (material.model != SpecularModel::none) add("specular", format_vector(material.specular));
-  if (has_alpha(material.model)) {
-    add("alpha_x", fmt::format("{}", material.alpha_x));
-    add("alpha_y", fmt::format("{}", material.alpha_y));
+  const MaterialTextures& textures = file.textures;
+  const auto add_value = [&](const char* name, const std::optional<TextureFile>& texture,
+                             const std::string& value) {
+    add(name, texture ? format_texture(*texture) : value);
+  };
+  const auto add_texture = [&](const char* name, const std::optional<TextureFile>& texture) {
+    if (texture) add(name, format_texture(*texture));
+  };
+  add_value("diffuse", textures.diffuse, format_vector(material.diffuse));
+  if (material.model != SpecularModel::none)
+    add_value("specular", textures.specular, format_vector(material.specular));
+  if (has_alpha(material.model) && !textures.roughness) {
+    add_value("alpha_x", textures.alpha_x, fmt::format("{}", material.alpha_x));
+    add_value("alpha_y", textures.alpha_y, fmt::format("{}", material.alpha_y));
   }
+  add_texture("roughness", textures.roughness);
+  add_texture("tangent_rotation_rad", textures.tangent_rotation_rad);
+  add_texture("normal", textures.normal);
+  if (!textures.empty()) add_name("wrap", name_of(kTextureWrapNames, textures.wrap));
   if (material.model == SpecularModel::cook_torrance) {
     add_name("distribution", name_of(kDistributionNames, material.distribution));
     add_name("shadowing", name_of(kShadowingNames, material.shadowing));

@@ -61,6 +61,21 @@ PreparedLights checked_lights(const LightRig& rig, const LookOptions& options) {
   }
 }
 
+/// The textures of the material, at the transfer's vertices.
+std::optional<VaryingSubject> load_textures(const LookOptions& options,
+                                            const MaterialFile& material,
+                                            const Transfer& transfer) {
+  if (material.textures.empty()) return {};
+  if (transfer.texcoords.empty())
+    throw Error(ErrorKind::input, options.transfer,
+                fmt::format("has no texture coordinates (UVs), expected some for the textures of "
+                            "{}: bake a mesh that has them",
+                            options.material.name));
+  const MaterialPictures pictures = read_material_pictures(material, options.material.name);
+  return varying_subject(transfer,
+                         make_material_maps(material.material, pictures, material.textures.wrap));
+}
+
 void scale_map(Image& environment, float factor, const LookOptions& options) {
   float most = 0;
   for (Rgb& pixel : environment.pixels) {
@@ -105,12 +120,15 @@ Look load_look(const LookOptions& options, Work& work) {
   if (options.environment.empty() && options.lights.empty())
     throw UsageError("no light given, expected --env or --lights");
   Look look;
-  look.material = load_material(options.material).material;
+  const MaterialFile material = load_material(options.material);
+  look.material = material.material;
   look.transfer = read_transfer(options.transfer);
   throw_if_interrupted();
   if (!look.transfer.bases.empty() && options.shading.terms > look.transfer.terms())
     throw UsageError(fmt::format("--terms: found {}, expected at most the {} that {} holds",
                                  options.shading.terms, look.transfer.terms(), options.transfer));
+  look.varying = load_textures(options, material, look.transfer);
+  throw_if_interrupted();
   if (!options.environment.empty()) look.environment = load_environment(options.environment, work);
 
   look.report = {{"transfer", options.transfer},

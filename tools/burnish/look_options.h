@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "common/work.h"
 #include "harness/camera.h"
 #include "harness/picture.h"
+#include "harness/primary_hits.h"
 #include "harness/reference_integrator.h"
 #include "material_options.h"
 
@@ -36,7 +38,8 @@ void add_look_options(CLI::App& app, LookOptions& options);
 /// A baked mesh and all that lights it.
 struct Look {
   Transfer transfer;
-  Material material;
+  Material material;                       ///< where nothing varies
+  std::optional<VaryingSubject> varying;   ///< of a material with textures
   Image environment;                       ///< no pixels without --env
   Eigen::Matrix3f world_from_environment;  ///< of `environment`
   LightRig rig;                            ///< in the world
@@ -46,6 +49,7 @@ struct Look {
   nlohmann::ordered_json report;  ///< what was read and how long it took
 
   /// These refer to the object.
+  Subject subject() const { return {&transfer, {&material, 1}, {}, varying ? &*varying : nullptr}; }
   Lighting lighting() const { return {&lights, specular_from_map ? &filtered : nullptr}; }
   EnvironmentLight environment_light() const {
     return {environment.pixels.empty() ? nullptr : &environment, world_from_environment};

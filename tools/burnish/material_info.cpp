@@ -43,6 +43,30 @@ void add_parameters(const Material& material, Json& info) {
   if (material.fitted) info["lobes"] = material.fitted->lobes.size();
 }
 
+/// The fields that are textures, and their files.
+Json textures_json(const MaterialTextures& textures) {
+  Json list = Json::object();
+  const auto add = [&](const char* name, const std::optional<TextureFile>& texture) {
+    if (texture) list[name] = texture->file;
+  };
+  add("diffuse", textures.diffuse);
+  add("specular", textures.specular);
+  add("alpha_x", textures.alpha_x);
+  add("alpha_y", textures.alpha_y);
+  add("roughness", textures.roughness);
+  add("tangent_rotation_rad", textures.tangent_rotation_rad);
+  add("normal", textures.normal);
+  return list;
+}
+
+/// As seen from so far that textures are one colour.
+Material mean_material(const MaterialFile& file, const std::string& path) {
+  if (file.textures.empty()) return file.material;
+  const MaterialMaps maps =
+      make_material_maps(file.material, read_material_pictures(file, path), file.textures.wrap);
+  return material_at(file.material, maps, {.width = 1e6f}, {}).material;
+}
+
 Json views_json(const Material& material) {
   Json views = Json::array();
   if (!material.has_specular()) return views;
@@ -61,9 +85,11 @@ Json material_info(const std::string& name, const MaterialFile& file, const std:
   info["name"] = file.name;
   info["source"] = file.source;
   info["fit_relative_l2"] = file.fit_relative_l2 ? Json(*file.fit_relative_l2) : Json();
-  add_parameters(file.material, info);
-  info["views"] = views_json(file.material);
-  if (!png.empty()) write_png(draw_material_lobes(file.material, {}), png);
+  const Material material = mean_material(file, name);
+  add_parameters(material, info);
+  if (!file.textures.empty()) info["textures"] = textures_json(file.textures);
+  info["views"] = views_json(material);
+  if (!png.empty()) write_png(draw_material_lobes(material, {}), png);
   return info;
 }
 

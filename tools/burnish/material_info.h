@@ -9,7 +9,8 @@
 /// What `burnish info` says of materials.
 namespace burnish::tools {
 
-/// Of a preset or a file; draws its lobes to `png` unless that is empty. `name` as it was given.
+/// Of a preset or a file; of textures, the mean. Draws its lobes to `png` unless that is empty.
+/// `name` as it was given: textures are relative to it.
 nlohmann::ordered_json material_info(const std::string& name, const MaterialFile& file,
                                      const std::string& png);
 

@@ -65,16 +65,33 @@ void require_of_model(const char* flag, bool given, bool of_model, SpecularModel
                                  flag, name_of(kSpecularModelNames, model)));
 }
 
+void require_no_texture(const char* flag, bool given, bool textured) {
+  if (given && textured)
+    throw UsageError(fmt::format("{}: found with a material that has a texture for it", flag));
+}
+
+void check_overrides(const MaterialOptions& options, const MaterialFile& file) {
+  const SpecularModel model = file.material.model;
+  const MaterialTextures& textures = file.textures;
+  const auto check = [&](const char* flag, bool given, bool of_model, bool textured) {
+    require_of_model(flag, given, of_model, model);
+    require_no_texture(flag, given, textured);
+  };
+  check("--alpha-x", options.alpha_x.has_value(), has_alpha(model),
+        textures.alpha_x || textures.roughness);
+  check("--alpha-y", options.alpha_y.has_value(), has_alpha(model),
+        textures.alpha_y || textures.roughness);
+  check("--diffuse", options.diffuse.has_value(), true, textures.diffuse.has_value());
+  check("--specular", options.specular.has_value(), model != SpecularModel::none,
+        textures.specular && !has_fresnel(model));
+}
+
 void override_material(const MaterialOptions& options, Material& material) {
-  const SpecularModel model = material.model;
-  require_of_model("--alpha-x", options.alpha_x.has_value(), has_alpha(model), model);
-  require_of_model("--alpha-y", options.alpha_y.has_value(), has_alpha(model), model);
-  require_of_model("--specular", options.specular.has_value(), model != SpecularModel::none, model);
   if (options.alpha_x) material.alpha_x = *options.alpha_x;
   if (options.alpha_y) material.alpha_y = *options.alpha_y;
   if (options.diffuse) material.diffuse = *options.diffuse;
   if (!options.specular) return;
-  if (has_fresnel(model)) {
+  if (has_fresnel(material.model)) {
     material.fresnel.model = FresnelModel::schlick;
     material.fresnel.normal_reflectance = *options.specular;
   } else {
@@ -142,6 +159,7 @@ MaterialFile load_material(const MaterialOptions& options) {
         "--material: found '{}', expected a file (.json), a model ({}) or a preset ({})",
         options.name, model_list(), preset_list()));
   }
+  check_overrides(options, file);
   override_material(options, file.material);
   return file;
 }

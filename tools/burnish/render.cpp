@@ -133,8 +133,7 @@ void run(const Options& options) {
   if (options.reference_samples > 0 && look.environment.pixels.empty() && !look.rig.lobes.empty())
     throw UsageError("--reference: found lobes without their environment map, expected --env");
   const SceneRays rays(look.transfer);
-  const std::vector<Material> materials = {look.material};
-  const Subject subject = {&look.transfer, materials, {}};
+  const Subject subject = look.subject();
   const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
   const Camera camera = look_camera(options.look, look.transfer, aspect);
   const Vector3f up = up_direction(options.look.up);

@@ -26,12 +26,11 @@ void run(const Options& options) {
   Work work(options.common);
   const Look look = load_look(options.look, work);
   const Transfer& transfer = look.transfer;
-  const std::vector<Material> materials = {look.material};
   const Camera camera = look_camera(options.look, transfer, 1.5f);
 
   const Stopwatch watch;
-  const std::vector<Rgb> radiance = shade_all_vertices({&transfer, materials, {}}, look.lighting(),
-                                                       camera.origin, options.look.shading);
+  const std::vector<Rgb> radiance =
+      shade_all_vertices(look.subject(), look.lighting(), camera.origin, options.look.shading);
   const double shading_ms = watch.seconds() * 1e3;
   throw_if_interrupted();
   write_radiance_ply(options.output, transfer.positions, transfer.normals, radiance,

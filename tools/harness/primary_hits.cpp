@@ -1,5 +1,6 @@
 #include "harness/primary_hits.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 
@@ -74,6 +75,55 @@ SurfacePoint surface_point(const Transfer& transfer, const PrimaryHit& hit, cons
   const float side = face.dot(normal) < 0 ? -1.0f : 1.0f;
   point.front = side * face.dot((eye - point.position).normalized()) > 0;
   return point;
+}
+
+VaryingSubject varying_subject(const Transfer& transfer, MaterialMaps maps) {
+  VaryingSubject varying;
+  varying.maps = std::move(maps);
+  const VertexTaps taps = vertex_taps(transfer);
+  resize(varying.vertices, varying.maps, transfer.vertex_count());
+  tbb::parallel_for(
+      tbb::blocked_range<size_t>(0, transfer.vertex_count(), 256), [&](const auto& range) {
+        sample_vertices(varying.maps, taps, range.begin(), range.end(), varying.vertices);
+      });
+  return varying;
+}
+
+SurfaceMaterial surface_material(const Subject& subject, const SurfacePoint& point,
+                                 const Vector3f& eye, float sample_angle_rad) {
+  if (!subject.varying) return {subject.vertex_material(point.vertices[0]), point.frame};
+  const Transfer& transfer = *subject.transfer;
+  const auto& [a, b, c] = point.vertices;
+  TexturePlace place;
+  for (int i = 0; i < 3; ++i)
+    place.uv += point.weight[size_t(i)] * transfer.texcoords[point.vertices[size_t(i)]];
+  const Vector3f across = (transfer.positions[b] - transfer.positions[a])
+                              .cross(transfer.positions[c] - transfer.positions[a]);
+  const Vector2<float> uv_b = transfer.texcoords[b] - transfer.texcoords[a];
+  const Vector2<float> uv_c = transfer.texcoords[c] - transfer.texcoords[a];
+  const float uv_area = std::abs(uv_b.x() * uv_c.y() - uv_b.y() * uv_c.x());
+  // The area that a sample sees: as of a sphere around the eye, over the cosine of the view.
+  const Vector3f to_eye = eye - point.position;
+  const float cosine = std::max(std::abs(across.normalized().dot(to_eye.normalized())), 0.05f);
+  const float seen = to_eye.squaredNorm() * sample_angle_rad * sample_angle_rad / cosine;
+  if (across.norm() > 0) place.width = std::sqrt(seen * uv_area / across.norm());
+  const TextureSigns signs = texture_signs(transfer, point.vertices, point.frame);
+  place.u_sign = signs.u;
+  place.v_sign = signs.v;
+  return material_at(subject.materials[0], subject.varying->maps, place, point.frame);
+}
+
+SurfaceMaterial vertex_material(const Subject& subject, size_t vertex) {
+  const Transfer& transfer = *subject.transfer;
+  const Frame<float> frame =
+      frame_from_normal_tangent(transfer.normals[vertex], transfer.tangents[vertex]);
+  if (!subject.varying) return {subject.vertex_material(vertex), frame};
+  return material_at(subject.materials[0], variation_of(subject.varying->vertices), vertex, frame);
+}
+
+float sample_angle_rad(const View& view) {
+  const float half = view.camera.vertical_fov_deg * (kPi<float> / 360);
+  return 2 * std::tan(half) / float(view.height * view.samples_per_axis);
 }
 
 Vector3f outgoing_toward(const Vector3f& eye, const Vector3f& position, const Vector3f& normal) {

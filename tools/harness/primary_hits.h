@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "burnish/material/material.h"
+#include "burnish/material/varying_material.h"
 #include "burnish/precompute/ray_scene.h"
 #include "burnish/shading/transfer.h"
 #include "burnish/sphere/frame.h"
@@ -32,11 +32,24 @@ class SceneRays {
   std::optional<RayScene> shadowing_;  // absent when it would equal visible_
 };
 
+/// A material that varies over UV, and the same by vertex.
+struct VaryingSubject {
+  MaterialMaps maps;
+  MaterialArrays vertices;
+};
+
+/// Samples the maps at the transfer's vertices, in parallel. Throws std::invalid_argument for a
+/// transfer without texture coordinates.
+VaryingSubject varying_subject(const Transfer& transfer, MaterialMaps maps);
+
 /// What is to be shaded.
 struct Subject {
   const Transfer* transfer = nullptr;         ///< never null
   std::span<const Material> materials;        ///< one or more
   std::span<const std::uint8_t> material_id;  ///< #V, or empty: all vertices have materials[0]
+
+  /// Over materials[0]; null: nothing varies. Then there are no ids.
+  const VaryingSubject* varying = nullptr;
 
   size_t material_of(size_t vertex) const { return material_id.empty() ? 0 : material_id[vertex]; }
   const Material& vertex_material(size_t vertex) const { return materials[material_of(vertex)]; }
@@ -90,6 +103,15 @@ struct SurfacePoint {
 
 /// The point of a hit, as seen from `eye`.
 SurfacePoint surface_point(const Transfer& transfer, const PrimaryHit& hit, const Vector3f& eye);
+
+/// The material at a point, averaged over what a sample sees of the surface, and the frame to shade
+/// it with; `sample_angle_rad` is between the rays of neighbouring samples.
+SurfaceMaterial surface_material(const Subject& subject, const SurfacePoint& point,
+                                 const Vector3f& eye, float sample_angle_rad);
+SurfaceMaterial vertex_material(const Subject& subject, size_t vertex);
+
+/// Of a view, in the middle of its picture.
+float sample_angle_rad(const View& view);
 
 /// Toward the eye from a point, by lift_above_horizon as in shade_vertices: a smooth normal may
 /// face away where the surface does not. A surface seen from behind (`front` false) is black

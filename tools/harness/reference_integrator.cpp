@@ -357,12 +357,15 @@ Picture render_reference(const Subject& subject, const SceneRays& rays, const Pr
   const Vector3f& eye = view.camera.origin;
   const PrimaryRays camera = primary_rays(view.camera, view.width, view.height);
   const size_t per_pixel = hits.samples_per_pixel();
+  const float sample_angle = sample_angle_rad(view);
   Picture picture;
   picture.radiance = picture.variance = Image(view.width, view.height);
   picture.hit.assign(picture.radiance.pixels.size(), 0);
   parallel_with_progress("reference", picture.hit.size(), 64, progress, [&](size_t pixel) {
     std::vector<ReferenceIntegrator::Point> points;
+    std::vector<SurfaceMaterial> materials;  // that the points refer to
     points.reserve(per_pixel);
+    materials.reserve(per_pixel);
     Rgb background = Rgb::Zero();
     size_t met = 0;
     for (size_t sample = 0; sample < per_pixel; ++sample) {
@@ -375,9 +378,10 @@ Picture render_reference(const Subject& subject, const SceneRays& rays, const Pr
       ++met;
       const SurfacePoint point = surface_point(*subject.transfer, hit, eye);
       if (!point.front) continue;
-      points.push_back(integrator.prepare(point.position, point.frame,
-                                          outgoing_toward(eye, point.position, point.frame.z),
-                                          subject.vertex_material(point.vertices[0])));
+      const SurfaceMaterial& at =
+          materials.emplace_back(surface_material(subject, point, eye, sample_angle));
+      points.push_back(integrator.prepare(
+          point.position, at.frame, outgoing_toward(eye, point.position, at.frame.z), at.material));
     }
     const ReferenceEstimate estimate = estimate_radiance(integrator, points, pixel, options);
     const double share = double(points.size()) / double(per_pixel);
@@ -400,10 +404,9 @@ VertexReference shade_reference_vertices(const Subject& subject, const SceneRays
   result.variance.resize(transfer.vertex_count());
   parallel_with_progress("reference", transfer.vertex_count(), 16, progress, [&](size_t vertex) {
     const Vector3f& position = transfer.positions[vertex];
-    const Frame<float> frame =
-        frame_from_normal_tangent(transfer.normals[vertex], transfer.tangents[vertex]);
+    const SurfaceMaterial at = vertex_material(subject, vertex);
     const ReferenceIntegrator::Point point = integrator.prepare(
-        position, frame, outgoing_toward(eye, position, frame.z), subject.vertex_material(vertex));
+        position, at.frame, outgoing_toward(eye, position, at.frame.z), at.material);
     const ReferenceEstimate estimate = estimate_radiance(integrator, {&point, 1}, vertex, options);
     result.radiance[vertex] = estimate.mean.cast<float>();
     result.variance[vertex] = estimate.variance.cast<float>();

@@ -6,6 +6,8 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include "burnish/shading/shade_varying.h"
+
 namespace burnish {
 namespace {
 
@@ -34,20 +36,32 @@ void interpolate(const SurfacePoint& surface, const Coefficients& of, std::vecto
 /// Shades interpolated points; holds the interpolated coefficients between calls.
 class PixelShader {
  public:
+  /// `sample_angle_rad` as surface_material takes it.
   PixelShader(const Subject& subject, std::span<const PreparedMaterial> materials,
-              const Vector3f& eye, const Lighting& lighting, const ShadingOptions& options)
+              const Vector3f& eye, float sample_angle_rad, const Lighting& lighting,
+              const ShadingOptions& options)
       : subject_(subject),
         transfer_(*subject.transfer),
         materials_(materials),
         eye_(eye),
+        sample_angle_rad_(sample_angle_rad),
         lighting_(lighting),
         options_(options),
         coefficients_(static_cast<size_t>(transfer_.terms())),
         ladder_coefficients_(static_cast<size_t>(transfer_.ladder_terms())) {}
 
   Rgb operator()(const SurfacePoint& surface) {
+    if (!subject_.varying)
+      return shade(surface, materials_[subject_.material_of(surface.vertices[0])]);
+    const SurfaceMaterial at = surface_material(subject_, surface, eye_, sample_angle_rad_);
+    SurfacePoint turned = surface;
+    turned.frame = at.frame;
+    return shade(turned, prepare_material(at.material, options_.specular));
+  }
+
+ private:
+  Rgb shade(const SurfacePoint& surface, const PreparedMaterial& material) {
     const Vector3f outgoing = outgoing_toward(eye_, surface.position, surface.frame.z);
-    const PreparedMaterial& material = materials_[subject_.material_of(surface.vertices[0])];
     const auto& [a, b, c] = surface.vertices;
     if (transfer_.bases.empty() || (transfer_.basis_id[a] == transfer_.basis_id[b] &&
                                     transfer_.basis_id[a] == transfer_.basis_id[c]))
@@ -60,7 +74,6 @@ class PixelShader {
     return sum;
   }
 
- private:
   /// The surface point with the visibility of a vertex.
   ShadingPoint point_like_vertex(const SurfacePoint& surface, std::uint32_t vertex) const {
     ShadingPoint point = vertex_shading_point(transfer_, vertex);
@@ -89,6 +102,7 @@ class PixelShader {
   const Transfer& transfer_;
   std::span<const PreparedMaterial> materials_;
   Vector3f eye_;
+  float sample_angle_rad_;
   const Lighting& lighting_;
   const ShadingOptions& options_;
   std::vector<float> coefficients_, ladder_coefficients_;
@@ -101,6 +115,10 @@ std::vector<Rgb> shade_all_vertices(const Subject& subject, const Lighting& ligh
   const std::vector<PreparedMaterial> materials = prepare_materials(subject.materials, options);
   std::vector<Rgb> radiance(subject.transfer->vertex_count());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, radiance.size(), 64), [&](const auto& range) {
+    if (subject.varying)
+      return shade_vertices(*subject.transfer, lighting, subject.materials[0],
+                            variation_of(subject.varying->vertices), eye, options, range.begin(),
+                            std::span(radiance).subspan(range.begin(), range.size()));
     shade_vertices(*subject.transfer, lighting, materials, subject.material_id, eye, options,
                    range.begin(), std::span(radiance).subspan(range.begin(), range.size()));
   });
@@ -128,7 +146,7 @@ Picture render(const Subject& subject, const PrimaryHits& hits, const Lighting& 
   picture.radiance = Image(view.width, view.height);
   picture.hit.assign(picture.radiance.pixels.size(), 0);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, picture.hit.size(), 256), [&](const auto& range) {
-    PixelShader shade_pixel(subject, materials, eye, lighting, options);
+    PixelShader shade_pixel(subject, materials, eye, sample_angle_rad(view), lighting, options);
     for (size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
       const std::span<const PrimaryHit> samples = hits.pixel_hits(pixel);
       Rgb sum = Rgb::Zero();

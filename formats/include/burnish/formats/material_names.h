@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "burnish/material/material.h"
+#include "burnish/material/texture.h"
 
 /// The names of enums in material files.
 namespace burnish {
@@ -23,6 +24,10 @@ inline constexpr std::array kDistributionNames = {
 inline constexpr std::array kShadowingNames = {
     std::pair{"smith", Shadowing::smith}, std::pair{"smith-separable", Shadowing::smith_separable},
     std::pair{"v-cavity", Shadowing::v_cavity}};
+
+inline constexpr std::array kTextureWrapNames = {std::pair{"repeat", TextureWrap::repeat},
+                                                 std::pair{"mirror", TextureWrap::mirror},
+                                                 std::pair{"clamp", TextureWrap::clamp}};
 
 /// The name of a value in one of these lists; "" for one that is not there.
 template <class Enum, std::size_t N>

@@ -1,0 +1,20 @@
+#include "burnish/shading/shade_varying.h"
+
+namespace burnish {
+
+void shade_vertices(const Transfer& transfer, const Lighting& lighting, const Material& base,
+                    const MaterialVariation& variation, const Vector3f& eye,
+                    const ShadingOptions& options, size_t first, std::span<Rgb> radiance) noexcept {
+  for (size_t i = 0; i < radiance.size(); ++i) {
+    const size_t vertex = first + i;
+    ShadingPoint point = vertex_shading_point(transfer, vertex);
+    const SurfaceMaterial at = material_at(base, variation, vertex, point.frame);
+    point.frame = at.frame;
+    const Vector3f outgoing =
+        lift_above_horizon((eye - point.position).normalized(), point.frame.z);
+    radiance[i] = shade_point(point, outgoing, prepare_material(at.material, options.specular),
+                              lighting, options);
+  }
+}
+
+}  // namespace burnish
