@@ -258,6 +258,29 @@ TEST(SpecularSlice, IsFiniteAndPositiveAtTheExtremes) {
   EXPECT_GT(seen, 50000u);  // the loop has not been empty
 }
 
+TEST(SpecularSlice, AtGrazingViewsKeepsItsWidthAndStaysAboveTheHorizon) {
+  // Where one of the nodes holds all the light, a lobe may be narrower than its tooth, by a factor
+  // of some ten, and its axis is where light comes from.
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<double> unit(0, 1);
+  size_t seen = 0;
+  for (int i = 0; i < 3000; ++i) {
+    const double height = 0.0201 + 0.003 * unit(random), azimuth = 7 * unit(random);
+    const double sine = std::sqrt(1 - height * height);
+    const Vector3f o =
+        Vector3d(sine * std::cos(azimuth), sine * std::sin(azimuth), height).cast<float>();
+    for (const Material& material : every_model(0.5 * unit(random) + 0.05, 0.3)) {
+      for (const SliceLobe& part : slice_of(material, o, {SpecularForm::moments, 5, 3})) {
+        ++seen;
+        ASSERT_LT(std::max(part.lobe.bandwidth_x, part.lobe.bandwidth_y), 1e7)
+            << "seed " << kSeed << " alphas " << material.alpha_x << " o " << o.transpose();
+        ASSERT_GT(part.lobe.frame.z.z(), -1e-6f) << "seed " << kSeed << " o " << o.transpose();
+      }
+    }
+  }
+  EXPECT_GT(seen, 10000u);  // the loop has not been empty
+}
+
 TEST(SpecularSlice, IsEmptyForADiffuseMaterialAndForAViewFromBelow) {
   Material diffuse;
   EXPECT_EQ(prepare_material(diffuse, {}).count, 0);

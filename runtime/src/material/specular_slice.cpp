@@ -122,18 +122,24 @@ float distribution_over_lobes(const PreparedMaterial& prepared, const Vector3f& 
   return exact < kMost * sum ? exact / sum : kMost;
 }
 
+/// The rule for n.i is exact where that is linear; where it is not, a node may be just below the
+/// horizon.
+void lift_above_horizon(Node& node) {
+  constexpr float kLowest = 1e-3f;
+  if (node.incoming.z() >= kLowest) return;
+  Vector3f lifted = node.incoming;
+  lifted.z() = kLowest;
+  lifted.normalize();
+  node.offset += lifted - node.incoming;
+  node.incoming = lifted;
+}
+
 /// f cos over the lobes' sum, times the solid angle of incoming directions per half vector.
 Rgb node_weight(const PreparedMaterial& prepared, const Vector3f& outgoing, const Node& node) {
   if (node.cos_difference <= 0 || node.half.z() <= 0) return Rgb::Zero();
-  // The rule is exact where n.i is linear; where it is not, a node may be just below.
-  constexpr float kLowest = 1e-3f;
-  Vector3f incoming = node.incoming;
-  if (incoming.z() < kLowest) {
-    incoming.z() = kLowest;
-    incoming.normalize();
-  }
-  return specular_smooth_factor(prepared.material, outgoing, incoming) *
-         (distribution_over_lobes(prepared, node.half) * incoming.z() * 4 * node.cos_difference);
+  return specular_smooth_factor(prepared.material, outgoing, node.incoming) *
+         (distribution_over_lobes(prepared, node.half) * node.incoming.z() * 4 *
+          node.cos_difference);
 }
 
 /// A lobe of unit amplitude of a mean direction and a covariance in its tangent plane.
@@ -209,7 +215,8 @@ SliceLobe match_moments(const PreparedMaterial& prepared, const SpecularTooth& t
   for (size_t j = 0; j < count; ++j) {
     const Eigen::Vector2f place =
         plan.rule.point[j % 3] * plan.along + across.point[j / 3] * plan.across;
-    const Node node = make_node(frame, o, outgoing, place.x(), place.y());
+    Node node = make_node(frame, o, outgoing, place.x(), place.y());
+    lift_above_horizon(node);
     const Rgb weight =
         plan.rule.weight[j % 3] * across.weight[j / 3] * node_weight(prepared, outgoing, node);
     offset[j] = node.offset;
@@ -222,10 +229,14 @@ SliceLobe match_moments(const PreparedMaterial& prepared, const SpecularTooth& t
   mean /= total;
   const Vector3f axis = (2 * o.z() * frame.z - outgoing + mean).normalized();
   const Frame<float> tangent = frame_from_axis(axis);
+  constexpr float kEven =
+      0.02f;  // of the nodes without f: a width, where all but one weigh nothing
   float xx = 0, xy = 0, yy = 0;
   for (size_t j = 0; j < count; ++j) {
     const Vector3f from_mean = offset[j] - mean;
-    const float x = from_mean.dot(tangent.x), y = from_mean.dot(tangent.y), w = share[j] / total;
+    const float x = from_mean.dot(tangent.x), y = from_mean.dot(tangent.y);
+    const float w =
+        (1 - kEven) * share[j] / total + kEven * plan.rule.weight[j % 3] * across.weight[j / 3];
     xx += w * x * x, xy += w * x * y, yy += w * y * y;
   }
   result.lobe = lobe_from_covariance(tangent, xx, xy, yy);
