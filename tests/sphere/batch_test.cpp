@@ -114,7 +114,7 @@ TEST_P(Batch, AsgIntegralMatchesTheExactFormInDouble) {
   batch::asg_integral(bx, by, AsgIntegral::fast, fast);
   for (size_t i = 0; i < bx.size(); ++i) {
     const double truth = asg_integral_exact(double(bx[i]), double(by[i]));
-    // 7 midpoints err by 2e-7; a dozen roundings of positive terms.
+    // The polynomial errs by 4e-7; a dozen roundings of terms that hardly cancel.
     ASSERT_NEAR(exact[i] / truth, 1, 1e-6) << bx[i] << " " << by[i] << ", seed " << kSeed;
     const double quick = asg_integral_fast(double(bx[i]), double(by[i]));
     ASSERT_NEAR(fast[i] / quick, 1, 4e-7) << bx[i] << " " << by[i];

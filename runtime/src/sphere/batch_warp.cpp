@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstddef>
 
 #include "burnish/sphere/batch.h"
@@ -65,6 +66,62 @@ void warp_lobes_batch(const batch::AnisotropicGaussians& half_lobes,
       half_lobes.bandwidth_x.data(), half_lobes.bandwidth_y.data(), half_lobes.amplitude.data());
 }
 
+/// What the steps of the mean form hand on, of as many items as stay close at hand.
+constexpr size_t kBlock = 512;
+struct MeanWarpBlock {
+  float o_x[kBlock], o_y[kBlock], o_z[kBlock];
+  float mean[kBlock], weighted_mean[kBlock], weighted_square[kBlock], probability_over_mean[kBlock];
+};
+
+/// Items i..i + size.
+void see_block(const LobeShape<V>& shape, const batch::Frames& frames,
+               const batch::Directions& outgoing, size_t i, size_t size, MeanWarpBlock& block) {
+  float* const arrays[] = {block.o_x,
+                           block.o_y,
+                           block.o_z,
+                           block.mean,
+                           block.weighted_mean,
+                           block.weighted_square,
+                           block.probability_over_mean};
+  const batch::Directions &x = frames.x, &z = frames.z;
+  for_each_several(
+      size, arrays,
+      [&](D d, V xx, V xy, V xz, V zx, V zy, V zz, V ox, V oy, V oz) HWY_ATTR {
+        const Vector3<V> fx = {xx, xy, xz}, fz = {zx, zy, zz};
+        const SeenLobe<V> seen =
+            see_lobe(d, Frame<V>{fx, cross(fz, fx), fz}, shape, Vector3<V>{ox, oy, oz});
+        const CutNormal<V>& cut = seen.cut;
+        return Values<7>{{seen.outgoing.x, seen.outgoing.y, seen.outgoing.z, cut.mean,
+                          cut.weighted_mean, cut.weighted_square, cut.probability_over_mean}};
+      },
+      x.x.data() + i, x.y.data() + i, x.z.data() + i, z.x.data() + i, z.y.data() + i,
+      z.z.data() + i, outgoing.x.data() + i, outgoing.y.data() + i, outgoing.z.data() + i);
+}
+
+void place_block(V bandwidth_x, V bandwidth_y, const LobeShape<V>& shape,
+                 const batch::Frames& frames, const batch::WarpedLobes& results, size_t i,
+                 size_t size, const MeanWarpBlock& block) {
+  float* const arrays[] = {results.x.x.data() + i,         results.x.y.data() + i,
+                           results.x.z.data() + i,         results.z.x.data() + i,
+                           results.z.y.data() + i,         results.z.z.data() + i,
+                           results.bandwidth_x.data() + i, results.bandwidth_y.data() + i};
+  const batch::Directions &x = frames.x, &z = frames.z;
+  for_each_several(
+      size, arrays,
+      [&](D d, V xx, V xy, V xz, V zx, V zy, V zz, V ox, V oy, V oz, V weighted_mean,
+          V weighted_square, V probability_over_mean) HWY_ATTR {
+        const Vector3<V> fx = {xx, xy, xz}, fz = {zx, zy, zz};
+        const SeenLobe<V> seen = {
+            {ox, oy, oz}, {hn::Zero(d), weighted_mean, weighted_square, probability_over_mean}};
+        const WarpedLobe<V> w =
+            place_lobe(d, Frame<V>{fx, cross(fz, fx), fz}, bandwidth_x, bandwidth_y, shape, seen);
+        return Values<8>{{w.x.x, w.x.y, w.x.z, w.z.x, w.z.y, w.z.z, w.bandwidth_x, w.bandwidth_y}};
+      },
+      x.x.data() + i, x.y.data() + i, x.z.data() + i, z.x.data() + i, z.y.data() + i,
+      z.z.data() + i, block.o_x, block.o_y, block.o_z, block.weighted_mean, block.weighted_square,
+      block.probability_over_mean);
+}
+
 void warp_mean_batch(float bandwidth_x, float bandwidth_y,
                      const burnish::LobeShape<float>& half_shape, const batch::Frames& frames,
                      const batch::Directions& outgoing, const batch::WarpedLobes& results) {
@@ -80,9 +137,21 @@ void warp_mean_batch(float bandwidth_x, float bandwidth_y,
                               hn::Set(d, m.mean_yyz),
                               hn::Set(d, m.mean_zzz),
                               hn::Set(d, 1 / half_shape.in_plane_cosine)};
-  for_each_view(frames.x, frames.z, outgoing, results,
-                [&](D d, const Frame<V>& half, const Vector3<V>& o)
-                    HWY_ATTR { return warp_mean_to_incoming(d, half, all_x, all_y, shape, o); });
+  MeanWarpBlock block;
+  for (size_t i = 0; i < results.jacobian.size(); i += kBlock) {
+    const size_t size = std::min(kBlock, results.jacobian.size() - i);
+    see_block(shape, frames, outgoing, i, size, block);
+    place_block(all_x, all_y, shape, frames, results, i, size, block);
+    float* const masses[] = {results.amplitude.data() + i, results.jacobian.data() + i};
+    for_each_several(
+        size, masses,
+        [&](D d, V warped_x, V warped_y, V mean) HWY_ATTR {
+          const V jacobian = hn::Mul(hn::Set(d, 4.0f), mean);
+          return Values<2>{
+              {mean_amplitude(d, shape.integral, warped_x, warped_y, jacobian), jacobian}};
+        },
+        results.bandwidth_x.data() + i, results.bandwidth_y.data() + i, block.mean);
+  }
 }
 
 }  // namespace

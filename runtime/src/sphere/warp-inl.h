@@ -41,49 +41,6 @@ HWY_INLINE Vector3<V> to_world(const Frame<V>& frame, const Vector3<V>& v) {
           weighted_sum(frame.x.z, v.x, frame.y.z, v.y, frame.z.z, v.z)};
 }
 
-/// bandwidth_x and bandwidth_y of internal::WarpedAxes. The axis of the larger one has the
-/// components (cosine, sine) / sqrt(length_squared).
-template <class V>
-struct WarpedAxes {
-  V bandwidth_x, bandwidth_y;
-  V cosine, sine, length_squared;
-};
-
-/// internal::warped_axes. Divisions and roots, of which it has four, are most of the cost.
-template <class D, class V>
-HWY_INLINE WarpedAxes<V> warped_axes(D d, V bandwidth_x, V bandwidth_y, V aa, V bb, V ab, V c) {
-  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d), half = hn::Set(d, 0.5f);
-  const V large = hn::Max(bandwidth_x, bandwidth_y), small = hn::Min(bandwidth_x, bandwidth_y);
-  const V ratio = hn::IfThenElse(hn::Gt(large, zero), hn::Div(small, large), one);
-  const auto x_is_narrow = hn::Ge(bandwidth_x, bandwidth_y);
-  const V lambda = hn::IfThenElse(x_is_narrow, one, ratio);
-  const V mu = hn::IfThenElse(x_is_narrow, ratio, one);
-  // The matrix times 4 c^2.
-  const V cc = hn::Mul(c, c);
-  const V m_xx = hn::MulAdd(lambda, aa, hn::Mul(mu, bb));
-  const V m_xy = hn::Mul(hn::Sub(mu, lambda), hn::Mul(ab, c));
-  const V m_yy = hn::Mul(cc, hn::MulAdd(lambda, bb, hn::Mul(mu, aa)));
-  const V half_difference = hn::Mul(half, hn::Sub(m_xx, m_yy));
-  const V radius = hn::Sqrt(hn::MulAdd(half_difference, half_difference, hn::Mul(m_xy, m_xy)));
-  const V larger = hn::MulAdd(half, hn::Add(m_xx, m_yy), radius);
-  // 1 / larger and 1 / c^2 with one division.
-  const V inverse = hn::Div(hn::Set(d, 0.25f), hn::Mul(larger, cc));
-  WarpedAxes<V> result;
-  result.bandwidth_x = hn::Min(hn::Mul(large, hn::Mul(larger, hn::Mul(larger, inverse))),
-                               hn::Set(d, std::numeric_limits<float>::max()));
-  result.bandwidth_y = hn::Mul(small, hn::Mul(cc, inverse));
-  // The eigenvector is along (radius + half_difference, m_xy), or, where that would cancel,
-  // (m_xy, radius - half_difference). `larger` is at least 5e-5: a lobe of this radius is round.
-  const auto is_round = hn::Lt(radius, hn::Set(d, 1e-12f));
-  const V longer = hn::IfThenElse(is_round, one, hn::Add(radius, hn::Abs(half_difference)));
-  const V shorter = hn::IfThenZeroElse(is_round, m_xy);
-  const auto along_x = hn::Or(hn::Ge(half_difference, zero), is_round);
-  result.cosine = hn::IfThenElse(along_x, longer, hn::Abs(shorter));
-  result.sine = hn::IfThenElse(along_x, shorter, hn::CopySign(longer, m_xy));
-  result.length_squared = hn::IfThenElse(is_round, one, hn::Mul(hn::Add(radius, radius), longer));
-  return result;
-}
-
 /// x' of internal::across_view, not normalised, whose z is 0; and products of its components if it
 /// were.
 template <class V>
@@ -92,20 +49,66 @@ struct AcrossView {
   V xx, yy, xy;
 };
 
+/// bandwidth_x and bandwidth_y of internal::WarpedAxes. The axis of the larger one has the
+/// components (cosine, sine) / sqrt(length_squared).
+template <class V>
+struct WarpedAxes {
+  V bandwidth_x, bandwidth_y;
+  V cosine, sine, length_squared;
+};
+
+/// internal::warped_axes.
+template <class D, class V>
+HWY_INLINE WarpedAxes<V> warped_axes(D d, V bandwidth_x, V bandwidth_y, const AcrossView<V>& across,
+                                     V c, V quarter) {
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d), half = hn::Set(d, 0.5f);
+  const V large = hn::Max(bandwidth_x, bandwidth_y), small = hn::Min(bandwidth_x, bandwidth_y);
+  const V ratio = hn::IfThenElse(hn::Gt(large, zero), hn::Div(small, large), one);
+  const auto x_is_narrow = hn::Ge(bandwidth_x, bandwidth_y);
+  const V lambda = hn::IfThenElse(x_is_narrow, one, ratio);
+  const V mu = hn::IfThenElse(x_is_narrow, ratio, one);
+  // The matrix times 4 c^2.
+  const V cc = hn::Mul(c, c);
+  const V m_xx = hn::MulAdd(lambda, across.xx, hn::Mul(mu, across.yy));
+  const V m_xy = hn::Mul(hn::Sub(mu, lambda), hn::Mul(across.xy, c));
+  const V m_yy = hn::Mul(cc, hn::MulAdd(lambda, across.yy, hn::Mul(mu, across.xx)));
+  const V half_difference = hn::Mul(half, hn::Sub(m_xx, m_yy)), square_xy = hn::Mul(m_xy, m_xy);
+  const V radius = hn::Sqrt(hn::MulAdd(half_difference, half_difference, square_xy));
+  const V larger = hn::MulAdd(half, hn::Add(m_xx, m_yy), radius);
+  // 1 / larger and 1 / c^2 with one division.
+  const V inverse = hn::Div(quarter, hn::Mul(larger, cc));
+  WarpedAxes<V> result;
+  result.bandwidth_x = hn::Min(hn::Mul(large, hn::Mul(larger, hn::Mul(larger, inverse))),
+                               hn::Set(d, std::numeric_limits<float>::max()));
+  result.bandwidth_y = hn::Mul(small, hn::Mul(cc, inverse));
+  // The eigenvector is along (radius + half_difference, m_xy), or, where that would cancel,
+  // (m_xy, radius - half_difference). `larger` is at least 5e-5: a lobe of this radius is round,
+  // and any axis will do.
+  const V other = hn::IfThenElseZero(hn::Lt(radius, hn::Set(d, 1e-12f)), one);
+  const V longer = hn::Add(hn::Add(radius, hn::Abs(half_difference)), other);
+  const V shorter = hn::Abs(m_xy);
+  const V swap = hn::IfThenElseZero(hn::Lt(half_difference, zero), hn::Xor(longer, shorter));
+  result.cosine = hn::Xor(longer, swap);
+  result.sine = hn::CopySign(hn::Xor(shorter, swap), m_xy);
+  result.length_squared = hn::MulAdd(longer, longer, square_xy);
+  return result;
+}
+
 template <class D, class V>
 HWY_INLINE AcrossView<V> across_view(D d, const Vector3<V>& local_outgoing) {
   const V x = local_outgoing.x, y = local_outgoing.y, one = hn::Set(d, 1.0f);
-  const V xx = hn::Mul(x, x), yy = hn::Mul(y, y), square = hn::Add(xx, yy);
-  // x' is then orthogonal to the lobe's axis to rounding.
-  const auto is_axis = hn::Lt(square, hn::Set(d, 1e-14f));
+  const V square = hn::MulAdd(x, x, hn::Mul(y, y));
+  // There any direction will do: about (1, 0).
+  const V other = hn::IfThenElseZero(hn::Lt(square, hn::Set(d, 1e-14f)), one);
   AcrossView<V> across;
-  across.x = hn::IfThenElse(is_axis, one, hn::Neg(y));
-  across.y = hn::IfThenZeroElse(is_axis, x);
-  across.length_squared = hn::IfThenElse(is_axis, one, square);
+  across.x = hn::Sub(other, y);
+  across.y = x;
+  across.length_squared = hn::Add(square, other);
   const V inverse = hn::Div(one, across.length_squared);
-  across.xx = hn::IfThenElse(is_axis, one, hn::Mul(yy, inverse));
-  across.yy = hn::IfThenZeroElse(is_axis, hn::Mul(xx, inverse));
-  across.xy = hn::IfThenZeroElse(is_axis, hn::Neg(hn::Mul(hn::Mul(x, y), inverse)));
+  const V scaled_x = hn::Mul(across.x, inverse), scaled_y = hn::Mul(across.y, inverse);
+  across.xx = hn::Mul(across.x, scaled_x);
+  across.yy = hn::Mul(across.y, scaled_y);
+  across.xy = hn::Mul(across.x, scaled_y);
   return across;
 }
 
@@ -140,8 +143,7 @@ HWY_INLINE WarpedLobe<V> warp_to_incoming(D d, const Frame<V>& half, V bandwidth
   const AcrossView<V> across = across_view(d, o);
   const Vector3<V> x = {across.x, across.y, zero};
   const V c = hn::Max(o.z, hn::Set(d, kMinWarpCosineFloat));
-  const WarpedAxes<V> axes =
-      warped_axes(d, bandwidth_x, bandwidth_y, across.xx, across.yy, across.xy, c);
+  const WarpedAxes<V> axes = warped_axes(d, bandwidth_x, bandwidth_y, across, c, hn::Set(d, 0.25f));
   const Vector3<V> axis = warped_x(d, axes, x, cross(z, x), across.length_squared);
   return {to_world(half, axis),
           to_world(half, z),
@@ -160,23 +162,27 @@ struct CutNormal {
 template <class D, class V>
 HWY_INLINE CutNormal<V> cut_normal(D d, V mean, V variance) {
   const V one = hn::Set(d, 1.0f), zero = hn::Zero(d), half = hn::Set(d, 0.5f);
-  // Out of sight beside any mean that shows. A wider range is not needed: means are at most 1.
-  const V deviation = hn::Max(hn::Sqrt(variance), hn::Set(d, 1e-15f));
+  // A least deviation that is out of sight beside any mean that shows. A wider range is not needed:
+  // means are at most 1.
+  const V held_variance = hn::Max(variance, hn::Set(d, 1e-30f));
+  const V deviation = hn::Sqrt(held_variance);
+  const V inverse_deviation = hn::Div(one, deviation);
   const V lowest = hn::Set(d, -4.0f);
-  const V ratio = hn::Max(hn::Div(mean, deviation), lowest);
+  const V ratio = hn::Max(hn::Mul(mean, inverse_deviation), lowest);
   // The density and the tail from one exponential: below 0, where they cancel, its error does, too.
   const V size = hn::Abs(ratio);
   // From 6 on both are out of sight; products of smaller numbers would be denormal, and slow.
   const V y = hn::Min(hn::Mul(size, hn::Set(d, 0.707106781f)), hn::Set(d, 6.0f));
-  const V e = exp_minus_square(d, y);
+  const ExpParts<V> parts = exp_parts(d, hn::Neg(hn::Mul(y, y)));
+  const V e = hn::MulAdd(parts.scale, parts.rest, parts.scale);
   const V t = hn::Div(one, hn::MulAdd(hn::Set(d, 0.4f), y, one));
   const V tail = hn::Mul(half, hn::Mul(t, erfc_curve(d, t)));
   const auto is_negative = hn::Lt(ratio, zero);
-  const V probability = hn::IfThenElse(is_negative, hn::Mul(e, tail), hn::NegMulAdd(e, tail, one));
+  const V probability = hn::Abs(hn::NegMulAdd(e, tail, hn::IfThenZeroElse(is_negative, one)));
   const V lacking = hn::NegMulAdd(size, tail, hn::Set(d, 0.398942280f));
   const V excess = hn::MulAdd(e, lacking, hn::Max(ratio, zero));
-  const V third = hn::Div(probability, hn::Mul(excess, deviation));
-  const V held_mean = hn::Mul(ratio, deviation), held_variance = hn::Mul(deviation, deviation);
+  const V third = hn::Div(hn::Mul(probability, inverse_deviation), excess);
+  const V held_mean = hn::Mul(ratio, deviation);
   CutNormal<V> s;
   s.mean = hn::IfThenElseZero(hn::Gt(ratio, lowest), hn::Mul(deviation, excess));
   s.weighted_mean = hn::MulAdd(held_variance, third, held_mean);
@@ -193,54 +199,81 @@ struct LobeShape {
   V inverse_in_plane_cosine;
 };
 
-/// warp_mean_to_incoming.
-template <class D, class V>
-HWY_INLINE WarpedLobe<V> warp_mean_to_incoming(D d, const Frame<V>& half, V bandwidth_x,
-                                               V bandwidth_y, const LobeShape<V>& m,
-                                               const Vector3<V>& outgoing) {
-  const V one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), four = hn::Set(d, 4.0f);
-  const Vector3<V> o = to_local(half, outgoing);
-  const V xx = hn::Mul(o.x, o.x), yy = hn::Mul(o.y, o.y), zz = hn::Mul(o.z, o.z);
-  const V variance = weighted_sum(xx, m.mean_xx, yy, m.mean_yy, zz, m.variance_z);
-  const CutNormal<V> s = cut_normal(d, hn::Mul(o.z, m.mean_z), variance);
-  const V third = s.probability_over_mean;
-  const V xxz = hn::Mul(third, m.mean_xxz), yyz = hn::Mul(third, m.mean_yyz),
-          zzz = hn::Mul(third, m.mean_zzz);
-  const V turn_x = hn::MulSub(four, hn::MulAdd(o.z, xxz, m.mean_xx), one);
-  const V turn_y = hn::MulSub(four, hn::MulAdd(o.z, yyz, m.mean_yy), one);
-  const V turn_z = hn::MulSub(four, m.variance_z, one);
-  const V along = hn::MulAdd(m.mean_z, s.weighted_mean, weighted_sum(xx, xxz, yy, yyz, zz, zzz));
-  Vector3<V> z = {hn::Mul(o.x, turn_x), hn::Mul(o.y, turn_y),
-                  hn::MulAdd(two, along, hn::Mul(o.z, turn_z))};
-  const V length_squared = dot(z, z);
-  const auto has_axis = hn::Gt(length_squared, hn::Set(d, 1e-30f));
-  const V inverse = hn::Div(one, hn::Sqrt(hn::IfThenElse(has_axis, length_squared, one)));
-  z = {hn::IfThenElseZero(has_axis, hn::Mul(z.x, inverse)),
-       hn::IfThenElseZero(has_axis, hn::Mul(z.y, inverse)),
-       hn::IfThenElse(has_axis, hn::Mul(z.z, inverse), one)};
+/// A lobe as a view meets it: the view in the lobe's frame, and o.h, cut at 0.
+template <class V>
+struct SeenLobe {
+  Vector3<V> outgoing;
+  CutNormal<V> cut;
+};
 
+// warp_mean_to_incoming in three steps. Each waits for few of its own results: as one, most of the
+// time the processor would wait for a chain of divisions and roots.
+
+template <class D, class V>
+HWY_INLINE SeenLobe<V> see_lobe(D d, const Frame<V>& half, const LobeShape<V>& m,
+                                const Vector3<V>& outgoing) {
+  const Vector3<V> o = to_local(half, outgoing);
+  const V variance = weighted_sum(hn::Mul(o.x, o.x), m.mean_xx, hn::Mul(o.y, o.y), m.mean_yy,
+                                  hn::Mul(o.z, o.z), m.variance_z);
+  return {o, cut_normal(d, hn::Mul(o.z, m.mean_z), variance)};
+}
+
+/// The mean of i, normalised: `z` of the scalar form.
+template <class D, class V>
+HWY_INLINE Vector3<V> mean_incoming(D d, const LobeShape<V>& m, const Vector3<V>& o,
+                                    const CutNormal<V>& s) {
+  const V one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), four = hn::Set(d, 4.0f);
+  const V third = hn::Mul(two, s.probability_over_mean),
+          third_z = hn::Mul(two, hn::Mul(third, o.z));
+  const V turn_x = hn::MulAdd(third_z, m.mean_xxz, hn::MulSub(four, m.mean_xx, one));
+  const V turn_y = hn::MulAdd(third_z, m.mean_yyz, hn::MulSub(four, m.mean_yy, one));
+  const V turn_z = hn::MulSub(four, m.variance_z, one);
+  const V thirds = weighted_sum(hn::Mul(o.x, o.x), m.mean_xxz, hn::Mul(o.y, o.y), m.mean_yyz,
+                                hn::Mul(o.z, o.z), m.mean_zzz);
+  Vector3<V> z = {
+      hn::Mul(o.x, turn_x), hn::Mul(o.y, turn_y),
+      weighted_sum(hn::Mul(two, m.mean_z), s.weighted_mean, third, thirds, o.z, turn_z)};
+  V square = dot(z, z);
+  // The mean may be none.
+  const V other = hn::IfThenElseZero(hn::Lt(square, hn::Set(d, 1e-30f)), one);
+  z.z = hn::Add(z.z, other);
+  square = hn::Add(square, other);
+  const V scale = hn::Div(one, hn::Sqrt(square));
+  return {hn::Mul(z.x, scale), hn::Mul(z.y, scale), hn::Mul(z.z, scale)};
+}
+
+/// Without amplitude and jacobian.
+template <class D, class V>
+HWY_INLINE WarpedLobe<V> place_lobe(D d, const Frame<V>& half, V bandwidth_x, V bandwidth_y,
+                                    const LobeShape<V>& m, const SeenLobe<V>& seen) {
+  const V one = hn::Set(d, 1.0f);
+  const Vector3<V>& o = seen.outgoing;
+  const Vector3<V> z = mean_incoming(d, m, o, seen.cut);
   const AcrossView<V> across = across_view(d, o);
   const V overlap = hn::MulAdd(across.x, z.x, hn::Mul(across.y, z.y));
   const Vector3<V> x = {hn::NegMulAdd(overlap, z.x, across.x),
                         hn::NegMulAdd(overlap, z.y, across.y), hn::Neg(hn::Mul(overlap, z.z))};
-  const V cosine = hn::Mul(hn::Sqrt(s.weighted_square), m.inverse_in_plane_cosine);
+  const V cosine = hn::Mul(hn::Sqrt(seen.cut.weighted_square), m.inverse_in_plane_cosine);
   const V c = hn::Min(hn::Max(cosine, hn::Set(d, kMinWarpCosineFloat)), one);
-  WarpedAxes<V> axes = warped_axes(d, bandwidth_x, bandwidth_y, across.xx, across.yy, across.xy, c);
-  const V in_plane = hn::Mul(m.inverse_in_plane_cosine, m.inverse_in_plane_cosine);
-  const V largest = hn::Set(d, std::numeric_limits<float>::max());
-  axes.bandwidth_x = hn::Min(hn::Mul(axes.bandwidth_x, in_plane), largest);
-  axes.bandwidth_y = hn::Min(hn::Mul(axes.bandwidth_y, in_plane), largest);
+  const V quarter =
+      hn::Mul(hn::Set(d, 0.25f), hn::Mul(m.inverse_in_plane_cosine, m.inverse_in_plane_cosine));
+  const WarpedAxes<V> axes = warped_axes(d, bandwidth_x, bandwidth_y, across, c, quarter);
   const V x_squared = hn::Max(dot(x, x), hn::Set(d, 1e-14f));
-  const V jacobian = hn::Mul(four, s.mean);
-  const AsgIntegralParts<V> whole = asg_integral_parts(d, axes.bandwidth_x, axes.bandwidth_y);
-  const V over_plane =
-      hn::Mul(hn::Mul(jacobian, m.integral), hn::Mul(hn::Set(d, 0.318309886f), whole.root));
   return {to_world(half, warped_x(d, axes, x, cross(z, x), x_squared)),
           to_world(half, z),
           axes.bandwidth_x,
           axes.bandwidth_y,
-          hn::Div(over_plane, whole.mean),
-          jacobian};
+          one,
+          one};
+}
+
+/// For which the lobe of these bandwidths has the mass of the half-vector lobe.
+template <class D, class V>
+HWY_INLINE V mean_amplitude(D d, V half_integral, V bandwidth_x, V bandwidth_y, V jacobian) {
+  const AsgIntegralParts<V> whole = asg_integral_parts(d, bandwidth_x, bandwidth_y);
+  const V over_plane =
+      hn::Mul(hn::Mul(jacobian, half_integral), hn::Mul(hn::Set(d, 0.318309886f), whole.root));
+  return hn::Div(over_plane, whole.mean);
 }
 
 }  // namespace HWY_NAMESPACE
