@@ -10,14 +10,19 @@
 #include "burnish/material/specular_slice.h"
 #include "common/interrupt.h"
 #include "common/options.h"
+#include "distribution_bench.h"
+#include "material_times.h"
 #include "specular_truth.h"
 #include "stations.h"
 
 namespace burnish::tools {
 namespace {
 
+enum class Part { all, slice, distribution, time };
+
 struct Options {
   BenchOptions bench;
+  Part only = Part::all;
 };
 
 struct NamedModel {
@@ -154,9 +159,20 @@ void measure_slices(const NamedModel& model, std::vector<BenchRow>& rows,
 void run(const Options& options) {
   require_writable(std::vector{options.bench.json, options.bench.csv});
   Work work(options.bench.common());
-  std::vector<BenchRow> rows, energies;
-  for (const NamedModel& model : models()) measure_slices(model, rows, energies);
-  rows.insert(rows.end(), energies.begin(), energies.end());
+  const auto is_wanted = [&](Part part) {
+    return options.only == Part::all || options.only == part;
+  };
+  std::vector<BenchRow> rows;
+  const auto add = [&rows](const std::vector<BenchRow>& more) {
+    rows.insert(rows.end(), more.begin(), more.end());
+  };
+  if (is_wanted(Part::slice)) {
+    std::vector<BenchRow> energies;
+    for (const NamedModel& model : models()) measure_slices(model, rows, energies);
+    add(energies);
+  }
+  if (is_wanted(Part::distribution)) add(measure_distributions());
+  if (is_wanted(Part::time)) add(measure_material_times(options.bench.repeat));
   report_bench("material", rows, options.bench, work);
 }
 
@@ -165,6 +181,12 @@ void run(const Options& options) {
 std::function<void()> declare_material_bench(CLI::App& app) {
   const auto options = std::make_shared<Options>();
   add_bench_options(app, options->bench);
+  add_choice(app, "--only", options->only,
+             {{"all", Part::all},
+              {"slice", Part::slice},
+              {"distribution", Part::distribution},
+              {"time", Part::time}},
+             "what to measure: errors of slices and their energy, of D as round lobes, times");
   return [options] { run(*options); };
 }
 

@@ -24,7 +24,7 @@ struct Node {
 /// dense about the longer axis, since a few lobes are wider than D there.
 std::vector<Node> quarter_nodes(double long_alpha, double short_alpha) {
   constexpr double kRightAngle = kPi<double> / 2;
-  const auto& panel_rule = internal::unit_gauss<10>();
+  const auto& panel_rule = internal::unit_gauss<16>();
   const auto& across_rule = internal::unit_gauss<28>();
   const double end = std::min(kRightAngle, 4.5 * long_alpha);
   const int panels = static_cast<int>(std::ceil(end / (4 * short_alpha)));

@@ -69,20 +69,14 @@ void warp_lobes_batch(const batch::AnisotropicGaussians& half_lobes,
 /// What the steps of the mean form hand on, of as many items as stay close at hand.
 constexpr size_t kBlock = 512;
 struct MeanWarpBlock {
-  float o_x[kBlock], o_y[kBlock], o_z[kBlock];
+  float o_x[kBlock], o_y[kBlock], o_z[kBlock], ratio[kBlock], deviation[kBlock];
   float mean[kBlock], weighted_mean[kBlock], weighted_square[kBlock], probability_over_mean[kBlock];
 };
 
 /// Items i..i + size.
 void see_block(const LobeShape<V>& shape, const batch::Frames& frames,
                const batch::Directions& outgoing, size_t i, size_t size, MeanWarpBlock& block) {
-  float* const arrays[] = {block.o_x,
-                           block.o_y,
-                           block.o_z,
-                           block.mean,
-                           block.weighted_mean,
-                           block.weighted_square,
-                           block.probability_over_mean};
+  float* const arrays[] = {block.o_x, block.o_y, block.o_z, block.ratio, block.deviation};
   const batch::Directions &x = frames.x, &z = frames.z;
   for_each_several(
       size, arrays,
@@ -90,12 +84,24 @@ void see_block(const LobeShape<V>& shape, const batch::Frames& frames,
         const Vector3<V> fx = {xx, xy, xz}, fz = {zx, zy, zz};
         const SeenLobe<V> seen =
             see_lobe(d, Frame<V>{fx, cross(fz, fx), fz}, shape, Vector3<V>{ox, oy, oz});
-        const CutNormal<V>& cut = seen.cut;
-        return Values<7>{{seen.outgoing.x, seen.outgoing.y, seen.outgoing.z, cut.mean,
-                          cut.weighted_mean, cut.weighted_square, cut.probability_over_mean}};
+        return Values<5>{
+            {seen.outgoing.x, seen.outgoing.y, seen.outgoing.z, seen.ratio, seen.deviation}};
       },
       x.x.data() + i, x.y.data() + i, x.z.data() + i, z.x.data() + i, z.y.data() + i,
       z.z.data() + i, outgoing.x.data() + i, outgoing.y.data() + i, outgoing.z.data() + i);
+}
+
+void cut_block(size_t size, MeanWarpBlock& block) {
+  float* const arrays[] = {block.mean, block.weighted_mean, block.weighted_square,
+                           block.probability_over_mean};
+  for_each_several(
+      size, arrays,
+      [](D d, V ratio, V deviation) HWY_ATTR {
+        const CutNormal<V> cut = cut_normal(d, ratio, deviation);
+        return Values<4>{
+            {cut.mean, cut.weighted_mean, cut.weighted_square, cut.probability_over_mean}};
+      },
+      block.ratio, block.deviation);
 }
 
 void place_block(V bandwidth_x, V bandwidth_y, const LobeShape<V>& shape,
@@ -111,15 +117,29 @@ void place_block(V bandwidth_x, V bandwidth_y, const LobeShape<V>& shape,
       [&](D d, V xx, V xy, V xz, V zx, V zy, V zz, V ox, V oy, V oz, V weighted_mean,
           V weighted_square, V probability_over_mean) HWY_ATTR {
         const Vector3<V> fx = {xx, xy, xz}, fz = {zx, zy, zz};
-        const SeenLobe<V> seen = {
-            {ox, oy, oz}, {hn::Zero(d), weighted_mean, weighted_square, probability_over_mean}};
-        const WarpedLobe<V> w =
-            place_lobe(d, Frame<V>{fx, cross(fz, fx), fz}, bandwidth_x, bandwidth_y, shape, seen);
+        const CutNormal<V> cut = {hn::Zero(d), weighted_mean, weighted_square,
+                                  probability_over_mean};
+        const WarpedLobe<V> w = place_lobe(d, Frame<V>{fx, cross(fz, fx), fz}, bandwidth_x,
+                                           bandwidth_y, shape, Vector3<V>{ox, oy, oz}, cut);
         return Values<8>{{w.x.x, w.x.y, w.x.z, w.z.x, w.z.y, w.z.z, w.bandwidth_x, w.bandwidth_y}};
       },
       x.x.data() + i, x.y.data() + i, x.z.data() + i, z.x.data() + i, z.y.data() + i,
       z.z.data() + i, block.o_x, block.o_y, block.o_z, block.weighted_mean, block.weighted_square,
       block.probability_over_mean);
+}
+
+/// Last: it reads what the others have written, and may write over what they read.
+void mass_block(V half_integral, const batch::WarpedLobes& results, size_t i, size_t size,
+                const MeanWarpBlock& block) {
+  float* const arrays[] = {results.amplitude.data() + i, results.jacobian.data() + i};
+  for_each_several(
+      size, arrays,
+      [&](D d, V warped_x, V warped_y, V mean) HWY_ATTR {
+        const V jacobian = hn::Mul(hn::Set(d, 4.0f), mean);
+        return Values<2>{
+            {mean_amplitude(d, half_integral, warped_x, warped_y, jacobian), jacobian}};
+      },
+      results.bandwidth_x.data() + i, results.bandwidth_y.data() + i, block.mean);
 }
 
 void warp_mean_batch(float bandwidth_x, float bandwidth_y,
@@ -141,16 +161,9 @@ void warp_mean_batch(float bandwidth_x, float bandwidth_y,
   for (size_t i = 0; i < results.jacobian.size(); i += kBlock) {
     const size_t size = std::min(kBlock, results.jacobian.size() - i);
     see_block(shape, frames, outgoing, i, size, block);
+    cut_block(size, block);
     place_block(all_x, all_y, shape, frames, results, i, size, block);
-    float* const masses[] = {results.amplitude.data() + i, results.jacobian.data() + i};
-    for_each_several(
-        size, masses,
-        [&](D d, V warped_x, V warped_y, V mean) HWY_ATTR {
-          const V jacobian = hn::Mul(hn::Set(d, 4.0f), mean);
-          return Values<2>{
-              {mean_amplitude(d, shape.integral, warped_x, warped_y, jacobian), jacobian}};
-        },
-        results.bandwidth_x.data() + i, results.bandwidth_y.data() + i, block.mean);
+    mass_block(shape.integral, results, i, size, block);
   }
 }
 

@@ -158,17 +158,12 @@ struct CutNormal {
   V mean, weighted_mean, weighted_square, probability_over_mean;
 };
 
-/// internal::cut_normal.
+inline constexpr float kLowestRatio = -4;
+
+/// internal::cut_normal, for a mean of `ratio` deviations, kLowestRatio or more.
 template <class D, class V>
-HWY_INLINE CutNormal<V> cut_normal(D d, V mean, V variance) {
+HWY_INLINE CutNormal<V> cut_normal(D d, V ratio, V deviation) {
   const V one = hn::Set(d, 1.0f), zero = hn::Zero(d), half = hn::Set(d, 0.5f);
-  // A least deviation that is out of sight beside any mean that shows. A wider range is not needed:
-  // means are at most 1.
-  const V held_variance = hn::Max(variance, hn::Set(d, 1e-30f));
-  const V deviation = hn::Sqrt(held_variance);
-  const V inverse_deviation = hn::Div(one, deviation);
-  const V lowest = hn::Set(d, -4.0f);
-  const V ratio = hn::Max(hn::Mul(mean, inverse_deviation), lowest);
   // The density and the tail from one exponential: below 0, where they cancel, its error does, too.
   const V size = hn::Abs(ratio);
   // From 6 on both are out of sight; products of smaller numbers would be denormal, and slow.
@@ -181,13 +176,13 @@ HWY_INLINE CutNormal<V> cut_normal(D d, V mean, V variance) {
   const V probability = hn::Abs(hn::NegMulAdd(e, tail, hn::IfThenZeroElse(is_negative, one)));
   const V lacking = hn::NegMulAdd(size, tail, hn::Set(d, 0.398942280f));
   const V excess = hn::MulAdd(e, lacking, hn::Max(ratio, zero));
-  const V third = hn::Div(hn::Mul(probability, inverse_deviation), excess);
-  const V held_mean = hn::Mul(ratio, deviation);
+  const V third = hn::Div(probability, hn::Mul(excess, deviation));
+  const V held_mean = hn::Mul(ratio, deviation), variance = hn::Mul(deviation, deviation);
   CutNormal<V> s;
-  s.mean = hn::IfThenElseZero(hn::Gt(ratio, lowest), hn::Mul(deviation, excess));
-  s.weighted_mean = hn::MulAdd(held_variance, third, held_mean);
+  s.mean = hn::IfThenElseZero(hn::Gt(ratio, hn::Set(d, kLowestRatio)), hn::Mul(deviation, excess));
+  s.weighted_mean = hn::MulAdd(variance, third, held_mean);
   s.weighted_square =
-      hn::Max(hn::MulAdd(held_mean, s.weighted_mean, hn::Add(held_variance, held_variance)), zero);
+      hn::Max(hn::MulAdd(held_mean, s.weighted_mean, hn::Add(variance, variance)), zero);
   s.probability_over_mean = third;
   return s;
 }
@@ -199,14 +194,15 @@ struct LobeShape {
   V inverse_in_plane_cosine;
 };
 
-/// A lobe as a view meets it: the view in the lobe's frame, and o.h, cut at 0.
+/// A lobe as a view meets it: the view in the lobe's frame; the deviation of o.h, and its mean over
+/// that.
 template <class V>
 struct SeenLobe {
   Vector3<V> outgoing;
-  CutNormal<V> cut;
+  V ratio, deviation;
 };
 
-// warp_mean_to_incoming in three steps. Each waits for few of its own results: as one, most of the
+// warp_mean_to_incoming in four steps. Each waits for few of its own results: as one, most of the
 // time the processor would wait for a chain of divisions and roots.
 
 template <class D, class V>
@@ -215,7 +211,11 @@ HWY_INLINE SeenLobe<V> see_lobe(D d, const Frame<V>& half, const LobeShape<V>& m
   const Vector3<V> o = to_local(half, outgoing);
   const V variance = weighted_sum(hn::Mul(o.x, o.x), m.mean_xx, hn::Mul(o.y, o.y), m.mean_yy,
                                   hn::Mul(o.z, o.z), m.variance_z);
-  return {o, cut_normal(d, hn::Mul(o.z, m.mean_z), variance)};
+  // A least deviation that is out of sight beside any mean that shows. A wider range is not needed:
+  // means are at most 1.
+  const V deviation = hn::Max(hn::Sqrt(variance), hn::Set(d, 1e-15f));
+  const V ratio = hn::Div(hn::Mul(o.z, m.mean_z), deviation);
+  return {o, hn::Max(ratio, hn::Set(d, kLowestRatio)), deviation};
 }
 
 /// The mean of i, normalised: `z` of the scalar form.
@@ -245,15 +245,15 @@ HWY_INLINE Vector3<V> mean_incoming(D d, const LobeShape<V>& m, const Vector3<V>
 /// Without amplitude and jacobian.
 template <class D, class V>
 HWY_INLINE WarpedLobe<V> place_lobe(D d, const Frame<V>& half, V bandwidth_x, V bandwidth_y,
-                                    const LobeShape<V>& m, const SeenLobe<V>& seen) {
+                                    const LobeShape<V>& m, const Vector3<V>& o,
+                                    const CutNormal<V>& cut) {
   const V one = hn::Set(d, 1.0f);
-  const Vector3<V>& o = seen.outgoing;
-  const Vector3<V> z = mean_incoming(d, m, o, seen.cut);
+  const Vector3<V> z = mean_incoming(d, m, o, cut);
   const AcrossView<V> across = across_view(d, o);
   const V overlap = hn::MulAdd(across.x, z.x, hn::Mul(across.y, z.y));
   const Vector3<V> x = {hn::NegMulAdd(overlap, z.x, across.x),
                         hn::NegMulAdd(overlap, z.y, across.y), hn::Neg(hn::Mul(overlap, z.z))};
-  const V cosine = hn::Mul(hn::Sqrt(seen.cut.weighted_square), m.inverse_in_plane_cosine);
+  const V cosine = hn::Mul(hn::Sqrt(cut.weighted_square), m.inverse_in_plane_cosine);
   const V c = hn::Min(hn::Max(cosine, hn::Set(d, kMinWarpCosineFloat)), one);
   const V quarter =
       hn::Mul(hn::Set(d, 0.25f), hn::Mul(m.inverse_in_plane_cosine, m.inverse_in_plane_cosine));
