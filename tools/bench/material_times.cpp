@@ -4,7 +4,9 @@
 #include <array>
 #include <memory>
 #include <random>
+#include <string>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -23,9 +25,15 @@ struct Views {
   std::array<std::vector<float>, 3> x, z, outgoing;
   std::vector<Vector3f> local_outgoing;
   std::array<std::vector<float>, 10> warped;
+  std::string instruction_set;
 
   batch::Frames frames() const { return {{x[0], x[1], x[2]}, {z[0], z[1], z[2]}}; }
   batch::Directions views() const { return {outgoing[0], outgoing[1], outgoing[2]}; }
+  /// Only if it is another one: that takes as long as a thousand lobes.
+  void use(const std::string& set) {
+    if (set != instruction_set) batch::use_instruction_set(set);
+    instruction_set = set;
+  }
   batch::WarpedLobes results() {
     auto& w = warped;
     return {{w[0], w[1], w[2]}, {w[3], w[4], w[5]}, w[6], w[7], w[8], w[9]};
@@ -80,12 +88,12 @@ void add_warps(Views& views, std::vector<Timed>& all) {
       const float bx = 1 / (alpha_x * alpha_x), by = 1 / (alpha_y * alpha_y);
       all.push_back(
           {start_row("warp, peak", "lobe", set, alpha_x, alpha_y), kViews, [&views, set, bx, by] {
-             batch::use_instruction_set(set);
+             views.use(set);
              batch::warp_to_incoming(bx, by, views.frames(), views.views(), views.results());
            }});
       all.push_back({start_row("warp, mean", "lobe", set, alpha_x, alpha_y), kViews,
                      [&views, set, bx, by, shape = make_lobe_shape(bx, by)] {
-                       batch::use_instruction_set(set);
+                       views.use(set);
                        batch::warp_mean_to_incoming(bx, by, shape, views.frames(), views.views(),
                                                     views.results());
                      }});
