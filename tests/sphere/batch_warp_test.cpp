@@ -1,5 +1,7 @@
 // The batch forms of the spherical warp.
 
+#include <algorithm>
+
 #include "sphere/batch_support.h"
 
 namespace burnish::test {
@@ -132,6 +134,34 @@ TEST_P(Batch, MeanWarpMatchesTheScalarForm) {
       ASSERT_FALSE(HasFailure()) << bandwidth_x << " " << bandwidth_y << ", view " << o.transpose()
                                  << ", ratio " << ratio << ", seed " << kSeed;
     }
+  }
+}
+
+TEST_P(Batch, MeanWarpOfManyIsThatOfPieces) {
+  // More than its blocks hold; pieces that fill no vector.
+  std::mt19937 random(kSeed);
+  const Views views = random_views(random);
+  const size_t size = views.x.x.size();
+  constexpr size_t kPiece = 37;
+  for (const auto& [bandwidth_x, bandwidth_y] : {std::pair{4.0f, 50.0f}, {800.0f, 90.0f}}) {
+    const LobeShape<float> shape = make_lobe_shape(bandwidth_x, bandwidth_y);
+    WarpedArrays whole(size), pieces(size);
+    batch::warp_mean_to_incoming(bandwidth_x, bandwidth_y, shape, views.frames(),
+                                 views.outgoing.spans(), whole.spans());
+    for (size_t i = 0; i < size; i += kPiece) {
+      const size_t count = std::min(kPiece, size - i);
+      const auto part = [&](const DirectionArrays& all) {
+        const batch::Directions d = all.spans();
+        return batch::Directions{d.x.subspan(i, count), d.y.subspan(i, count),
+                                 d.z.subspan(i, count)};
+      };
+      WarpedArrays piece(count);
+      batch::warp_mean_to_incoming(bandwidth_x, bandwidth_y, shape, {part(views.x), part(views.z)},
+                                   part(views.outgoing), piece.spans());
+      for (size_t a = 0; a < piece.all.size(); ++a)
+        std::copy(piece.all[a].begin(), piece.all[a].end(), pieces.all[a].begin() + long(i));
+    }
+    EXPECT_EQ(whole.all, pieces.all) << bandwidth_x;
   }
 }
 

@@ -67,7 +67,7 @@ void warp_lobes_batch(const batch::AnisotropicGaussians& half_lobes,
 }
 
 /// What the steps of the mean form hand on, of as many items as stay close at hand.
-constexpr size_t kBlock = 512;
+constexpr size_t kBlock = 256;
 struct MeanWarpBlock {
   float o_x[kBlock], o_y[kBlock], o_z[kBlock], ratio[kBlock], deviation[kBlock];
   float mean[kBlock], weighted_mean[kBlock], weighted_square[kBlock], probability_over_mean[kBlock];
