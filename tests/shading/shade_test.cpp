@@ -272,6 +272,21 @@ Transfer small_transfer(std::mt19937& random, int vertices, int terms) {
   return t;
 }
 
+TEST(PrepareMaterials, RefusesWhatIsOutOfItsDomain) {
+  Material good = diffuse_material(), narrow = metal(SpecularModel::ward, 0.3f, 1e-6f);
+  EXPECT_EQ(prepare_materials(std::vector{good}, {}).size(), 1u);
+  try {
+    prepare_materials(std::vector{good, narrow}, {});
+    FAIL() << "was accepted";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("material 1: alpha_y"), std::string::npos)
+        << error.what();
+  }
+  Material fitted = good;
+  fitted.model = SpecularModel::fitted;
+  EXPECT_THROW(prepare_materials(std::vector{fitted}, {}), std::invalid_argument);
+}
+
 TEST(ShadeVertices, RangesGiveTheSameAsTheWhole) {
   std::mt19937 random(kSeed);
   const Transfer transfer = small_transfer(random, 50, 3);

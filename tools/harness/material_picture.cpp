@@ -70,7 +70,7 @@ SliceError slice_error(const Material& material, const Slice& slice, const Vecto
   SliceError error;
   error.albedo = exact_sum / kPoints;
   error.lobes_albedo = lobes_sum / kPoints;
-  error.relative_l2 = norm > 0 ? std::sqrt(difference / norm) : 0;
+  error.relative_l2 = norm == 0 && difference == 0 ? 0 : std::sqrt(difference / norm);
   return error;
 }
 

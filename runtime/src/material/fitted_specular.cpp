@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 
 #include "burnish/sphere/lobe_domain.h"
 
@@ -38,6 +39,22 @@ std::string lobe_error(const AnisotropicGaussian<float>& lobe) {
   return error.empty() ? internal::scalar_error("amplitude", lobe.amplitude, false) : error;
 }
 
+/// Of entries that are each in range.
+std::string bound_error(const FittedSpecular& fitted) {
+  double distribution = 0, color = 0, masking = 0;
+  for (const auto& lobe : fitted.lobes) distribution += double(lobe.amplitude);
+  for (const Rgb& entry : fitted.color_by_difference)
+    color = std::max(color, double(entry.maxCoeff()));
+  for (const float entry : fitted.masking) masking = std::max(masking, double(entry));
+  const double bound = distribution * color * masking * masking;
+  if (bound <= double(kMaxFittedValue)) return {};
+  std::ostringstream text;
+  text << "the sum of amplitudes times the largest entries of color_by_difference and of masking, "
+          "squared, is "
+       << bound << ", expected at most " << kMaxFittedValue;
+  return text.str();
+}
+
 }  // namespace
 
 float eval_distribution(const FittedSpecular& fitted, const Vector3f& half) {
@@ -70,7 +87,7 @@ std::string domain_error(const FittedSpecular& fitted) {
   for (size_t i = 0; error.empty() && i < fitted.color_by_difference.size(); ++i)
     for (const float channel : fitted.color_by_difference[i])
       if (error.empty()) error = entry_error("color_by_difference", i, channel);
-  return error;
+  return error.empty() ? bound_error(fitted) : error;
 }
 
 }  // namespace burnish

@@ -135,7 +135,8 @@ HalfVectorLobes half_vector_lobes(const Material& material, int max_lobes) {
   };
   if (material.model == SpecularModel::none) return result;
   if (material.model == SpecularModel::fitted) {
-    for (const AnisotropicGaussian<float>& lobe : material.fitted->lobes) append(lobe);
+    for (const AnisotropicGaussian<float>& lobe : material.fitted->lobes)
+      if (result.count < kMaxFittedLobes) append(lobe);
     return result;
   }
   const Table table = table_of(material, max_lobes);

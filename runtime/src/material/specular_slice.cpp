@@ -124,7 +124,7 @@ float distribution_over_lobes(const PreparedMaterial& prepared, const Vector3f& 
 
 /// The rule for n.i is exact where that is linear; where it is not, a node may be just below the
 /// horizon.
-void lift_above_horizon(Node& node) {
+void lift_node(Node& node) {
   constexpr float kLowest = 1e-3f;
   if (node.incoming.z() >= kLowest) return;
   Vector3f lifted = node.incoming;
@@ -216,7 +216,7 @@ SliceLobe match_moments(const PreparedMaterial& prepared, const SpecularTooth& t
     const Eigen::Vector2f place =
         plan.rule.point[j % 3] * plan.along + across.point[j / 3] * plan.across;
     Node node = make_node(frame, o, outgoing, place.x(), place.y());
-    lift_above_horizon(node);
+    lift_node(node);
     const Rgb weight =
         plan.rule.weight[j % 3] * across.weight[j / 3] * node_weight(prepared, outgoing, node);
     offset[j] = node.offset;

@@ -295,8 +295,10 @@ std::vector<PreparedMaterial> prepare_materials(std::span<const Material> materi
                                                 const ShadingOptions& options) {
   std::vector<PreparedMaterial> prepared;
   prepared.reserve(materials.size());
-  for (const Material& material : materials)
-    prepared.push_back(prepare_material(material, options.specular));
+  for (size_t i = 0; i < materials.size(); ++i) {
+    require(domain_error(materials[i]), "material", i);
+    prepared.push_back(prepare_material(materials[i], options.specular));
+  }
   return prepared;
 }
 

@@ -25,6 +25,8 @@ struct FittedSpecular {
 
 inline constexpr int kMaxFittedLobes = 8;
 inline constexpr std::size_t kMaxFittedTable = 4096;
+/// Of D F S S, by the greatest of each: that of a lobe of alpha 1e-4 is 3e7.
+inline constexpr float kMaxFittedValue = 1e9f;
 
 /// D(h), of a unit half vector; 0 below the horizon.
 float eval_distribution(const FittedSpecular& fitted, const Vector3f& half);

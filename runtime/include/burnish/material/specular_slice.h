@@ -56,7 +56,7 @@ struct PreparedMaterial {
   bool corrects_distribution = false;
 };
 
-/// Nothing is allocated or thrown.
+/// Nothing is allocated or thrown. The material is one that domain_error accepts.
 PreparedMaterial prepare_material(const Material& material,
                                   const SpecularOptions& options) noexcept;
 

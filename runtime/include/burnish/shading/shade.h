@@ -76,7 +76,8 @@ struct ShadingPoint {
   float ladder_crossover = 0;                  ///< as in Transfer
 };
 
-/// As prepare_material, of each.
+/// As prepare_material, of each. Throws std::invalid_argument for a material that domain_error
+/// (material.h) objects to.
 std::vector<PreparedMaterial> prepare_materials(std::span<const Material> materials,
                                                 const ShadingOptions& options);
 
