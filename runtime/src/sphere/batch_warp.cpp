@@ -11,6 +11,7 @@
 
 #include "sphere/for_each-inl.h"
 #include "sphere/warp-inl.h"
+#include "sphere/warp_mean-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace burnish {
