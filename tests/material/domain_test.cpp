@@ -80,8 +80,9 @@ TEST(MaterialDomain, LooksIntoFittedLobes) {
             "fitted: color_by_difference has 0 entries, expected 2 to 4096");
   EXPECT_NE(fitted_error_after([](FittedSpecular& f) { f.color_by_difference[1].y() = kNan; }), "");
   // Each in range, but not their product.
-  EXPECT_NE(fitted_error_after([](FittedSpecular& f) { f.masking[0] = 1e13f; }).find("at most 1e+09"),
-            std::string::npos);
+  EXPECT_NE(
+      fitted_error_after([](FittedSpecular& f) { f.masking[0] = 1e13f; }).find("at most 1e+09"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -6,7 +6,8 @@ int main(int argc, char** argv) {
   using namespace burnish::tools;
   constexpr std::array kCommands = {
       Command{"bake", "bake the visibility of every vertex of a mesh", declare_bake},
-      Command{"info", "say what is in a mesh, picture, transfer, light file or material", declare_info},
+      Command{"info", "say what is in a mesh, picture, transfer, light file or material",
+              declare_info},
       Command{"fit-light", "fit anisotropic Gaussian lights to an environment map",
               declare_fit_light},
       Command{"fit-brdf", "fit a material to a measured BRDF", declare_fit_brdf},
