@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -127,8 +128,19 @@ AnisotropicGaussian<float> to_lobe(const LobeShape& shape, double amplitude) {
   return lobe;
 }
 
+Mixture diffuse_only(const BrdfRows& rows, const SmoothFactor& start) {
+  const std::vector<float> values(rows.place.size(), 0.0f);
+  Mixture mixture;
+  mixture.smooth = start;
+  improve_smooth_factor(rows, values, mixture.smooth);
+  mixture.square = relative_square(rows, values, mixture.smooth);
+  mixture.root_square = relative_root_square(rows, values, mixture.smooth);
+  return mixture;
+}
+
 /// With the lobes' integrals adding up to 1 and S = 1 at the normal; lobes of no amplitude go.
-Material to_material(const Mixture& mixture) {
+/// `unit` is what the samples' values were divided by.
+Material to_material(const Mixture& mixture, double unit) {
   auto fitted = std::make_shared<FittedSpecular>();
   const std::vector<double>& amplitudes = mixture.lobes.amplitudes;
   double total = 0;
@@ -143,12 +155,12 @@ Material to_material(const Mixture& mixture) {
   const double masking_scale = at_normal > 0 ? 1 / at_normal : 1;
   for (const double masking : mixture.smooth.masking)
     fitted->masking.push_back(static_cast<float>(masking_scale * masking));
-  const double color_scale = 1 / (lobe_scale * masking_scale * masking_scale);
+  const double color_scale = unit / (lobe_scale * masking_scale * masking_scale);
   for (Eigen::Index i = 0; i < mixture.smooth.color.rows(); ++i)
     fitted->color_by_difference.push_back(
         (color_scale * mixture.smooth.color.row(i)).transpose().array().cast<float>());
   Material material;
-  material.diffuse = mixture.smooth.diffuse.min(1.0).cast<float>();
+  material.diffuse = (unit * mixture.smooth.diffuse).min(1.0).cast<float>();
   material.model = SpecularModel::fitted;
   material.fitted = std::move(fitted);
   return material;
@@ -160,27 +172,30 @@ BrdfFit fit_brdf(const MeasuredBrdf& measured, const BrdfFitOptions& options,
                  const Progress& progress) {
   check_options(options);
   const int pairs = measured.isotropic ? 1 << 17 : 1 << 18;
-  const BrdfSamples samples =
+  BrdfSamples samples =
       sample_brdf(measured, {options.resolution, options.max_angle_rad, pairs, 0});
+  const double unit = normalize_values(samples, options);
   const BrdfRows rows(samples);
-  if (!(rows.norm2 > 0))
-    throw Error(ErrorKind::input, "measured BRDF", "is black, expected values above 0");
   RoundCounter rounds(progress, kTableRounds + options.lobes * kLobeRounds);
-  Mixture mixture;
-  mixture.smooth = initial_smooth_factor();
-  BrdfFit result;
+  SmoothFactor start = initial_smooth_factor();
+  start.max_diffuse = 1 / unit;
+  Mixture mixture = diffuse_only(rows, start);
   if (samples.pairs.size() >= size_t(kPairsForTable) * size_t(samples.grid.cells()))
-    fit_table(rows, rounds, mixture.smooth);
+    fit_table(rows, rounds, start);
   for (int k = 0; k < options.lobes; ++k) {
     Mixture more = mixture;
+    if (k == 0) more.smooth = start;
     const DistributionFit fit(samples, cell_target(rows, more.smooth));
     if (fit.empty()) break;
     fit.add_lobe(more.lobes);
     alternate(rows, rounds, more);
-    if (k > 0 && !is_better(more, mixture)) break;
+    if (!is_better(more, mixture)) break;
     mixture = more;
   }
-  result.material = to_material(mixture);
+  BrdfFit result;
+  result.material = to_material(mixture, unit);
+  if (const std::string wrong = domain_error(result.material); !wrong.empty())
+    throw Error(ErrorKind::input, options.subject, "cannot be a material: " + wrong);
   result.error = measure_brdf_fit(measured, result.material, options);
   result.rounds = rounds.done();
   rounds.finish();

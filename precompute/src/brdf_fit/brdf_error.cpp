@@ -13,8 +13,8 @@
 namespace burnish {
 
 void check_options(const BrdfFitOptions& options) {
-  const auto refuse = [](const std::string& message) {
-    throw Error(ErrorKind::input, "measured BRDF", message);
+  const auto refuse = [&](const std::string& message) {
+    throw Error(ErrorKind::input, options.subject, message);
   };
   if (options.lobes < 1 || options.lobes > kMaxFittedLobes)
     refuse(fmt::format("{} lobes, expected 1..{}", options.lobes, kMaxFittedLobes));
@@ -89,8 +89,10 @@ double reciprocity_bound(const MeasuredBrdf& measured, const BrdfFitOptions& opt
     const double weight2 = double(pair.weight) * double(pair.weight);
     const double ratio = double(pair.outgoing.z()) / double(pair.incoming.z());
     const double other = weight2 * ratio * ratio;
-    error += weight2 * other / (weight2 + other) * double((pair.value - exchanged).square().sum());
-    truth += weight2 * double(pair.value.square().sum()) + other * double(exchanged.square().sum());
+    error += weight2 * other / (weight2 + other) *
+             (pair.value - exchanged).cast<double>().square().sum();
+    truth += weight2 * pair.value.cast<double>().square().sum() +
+             other * exchanged.cast<double>().square().sum();
   }
   return relative(error, truth);
 }

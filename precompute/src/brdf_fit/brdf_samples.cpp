@@ -1,10 +1,14 @@
 #include "brdf_fit/brdf_samples.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
+#include "burnish/formats/error.h"
 #include "burnish/sphere/frame.h"
 
 namespace burnish {
@@ -104,6 +108,46 @@ std::vector<BrdfPair> irregular_pairs(const MeasuredBrdf& measured, const BrdfSa
   return pairs;
 }
 
+Vector3d half_of(const BrdfPair& pair) {
+  return (pair.outgoing + pair.incoming).cast<double>().normalized();
+}
+
+void center_on_samples(BrdfSamples& samples) {
+  for (size_t cell = 0; cell < samples.center.size(); ++cell) {
+    Vector3d sum = Vector3d::Zero();
+    for (size_t i = samples.begin[cell]; i < samples.begin[cell + 1]; ++i)
+      sum += half_of(samples.pairs[i]);
+    if (sum.norm() > 0) samples.center[cell] = sum.normalized();
+  }
+}
+
+// A lobe that falls to 1 / e at half the distance of a fourth neighbour holds a sample or two. That
+// distance where samples are dense, by the least tenth of some of them.
+double sample_bandwidth(const std::vector<BrdfPair>& pairs) {
+  constexpr size_t kProbes = 512, kNearest = 5;  // the first is the sample itself
+  std::vector<Vector3d> half;
+  for (const BrdfPair& pair : pairs) half.push_back(half_of(pair));
+  const size_t probes = std::min(kProbes, half.size());
+  std::vector<double> distance2(probes);
+  tbb::parallel_for(size_t(0), probes, [&](size_t probe) {
+    const Vector3d& at = half[probe * half.size() / probes];
+    std::array<double, kNearest> nearest;
+    nearest.fill(std::numeric_limits<double>::infinity());
+    for (const Vector3d& other : half) {
+      const double d2 = (other - at).squaredNorm();
+      if (d2 >= nearest.back()) continue;
+      nearest.back() = d2;
+      for (size_t i = kNearest - 1; i > 0 && nearest[i] < nearest[i - 1]; --i)
+        std::swap(nearest[i], nearest[i - 1]);
+    }
+    distance2[probe] = nearest.back();
+  });
+  if (probes == 0) return 1;
+  const auto tenth = distance2.begin() + static_cast<std::ptrdiff_t>(probes / 10);
+  std::nth_element(distance2.begin(), tenth, distance2.end());
+  return std::clamp(4 / *tenth, 1.0, 1e8);
+}
+
 }  // namespace
 
 double HalfVectorGrid::angle(double u) const {
@@ -152,7 +196,24 @@ BrdfSamples sample_brdf(const MeasuredBrdf& measured, const BrdfSamplePlan& plan
   samples.begin.assign(static_cast<size_t>(grid.cells()) + 1, 0);
   for (const BrdfPair& pair : samples.pairs) ++samples.begin[static_cast<size_t>(pair.cell) + 1];
   for (size_t i = 1; i < samples.begin.size(); ++i) samples.begin[i] += samples.begin[i - 1];
+  if (samples.irregular) {
+    center_on_samples(samples);
+    samples.max_bandwidth = sample_bandwidth(samples.pairs);
+  }
   return samples;
+}
+
+double normalize_values(BrdfSamples& samples, const BrdfFitOptions& options) {
+  if (samples.pairs.empty())
+    throw Error(ErrorKind::input, options.subject,
+                fmt::format("no samples within {:.4g} degrees of the normal; see --max-angle",
+                            options.max_angle_rad * 180 / kPi<double>));
+  float greatest = 0;
+  for (const BrdfPair& pair : samples.pairs) greatest = std::max(greatest, pair.value.maxCoeff());
+  if (!(greatest >= std::numeric_limits<float>::min()))
+    throw Error(ErrorKind::input, options.subject, "is black, expected values above 0");
+  for (BrdfPair& pair : samples.pairs) pair.value /= greatest;
+  return double(greatest);
 }
 
 }  // namespace burnish

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "burnish/formats/measured_brdf.h"
+#include "burnish/precompute/fit_brdf.h"
 #include "burnish/sphere/direction.h"
 
 namespace burnish {
@@ -36,9 +37,10 @@ struct BrdfSamples {
   HalfVectorGrid grid;
   std::vector<BrdfPair> pairs;
   std::vector<size_t> begin;     ///< of the pairs of a cell; one more at the end
-  std::vector<Vector3d> center;  ///< of a cell
+  std::vector<Vector3d> center;  ///< of a cell; of irregular data, of the half vectors in it
   bool isotropic = false;
-  bool irregular = false;  ///< pairs are the data's own, their half vectors not those of cells
+  bool irregular = false;      ///< pairs are the data's own, their half vectors not those of cells
+  double max_bandwidth = 1e8;  ///< of a lobe: a narrower one falls between the half vectors
 };
 
 /// The pairs to fit to or to measure at.
@@ -52,5 +54,9 @@ struct BrdfSamplePlan {
 /// Regular data: at each cell's centre as half vector, difference vectors of an even sequence over
 /// its hemisphere. Irregular data: its samples. Pairs without a value are left out.
 BrdfSamples sample_brdf(const MeasuredBrdf& measured, const BrdfSamplePlan& plan);
+
+/// Divides all values by the greatest, which is returned: squares of float neither overflow nor
+/// vanish. Throws Error if there are no pairs or no value above 0.
+double normalize_values(BrdfSamples& samples, const BrdfFitOptions& options);
 
 }  // namespace burnish

@@ -17,7 +17,7 @@ constexpr int kBlockEdge = 16;    // of the first blocks
 constexpr int kCandidates = 24;   // axes that a new lobe may have
 constexpr int kStepsPerLobe = 20;
 constexpr double kTolerance = 1e-6;
-constexpr double kMinBandwidth = 0.05, kMaxBandwidth = 1e8;
+constexpr double kMinBandwidth = 0.05;
 // A lobe whose axis is below the horizon has no peak to see, and no frame to shade in.
 constexpr double kLeastAxisCosine = 0.02;
 
@@ -101,7 +101,7 @@ std::vector<AnisotropicGaussian<double>> DistributionLobes::mixture() const {
 
 DistributionFit::DistributionFit(const BrdfSamples& samples, const CellTarget& table)
     : isotropic_(samples.isotropic),
-      limits_{kMinBandwidth, kMaxBandwidth, samples.isotropic, samples.isotropic} {
+      limits_{kMinBandwidth, samples.max_bandwidth, samples.isotropic, samples.isotropic} {
   const std::vector<Block> blocks = join_cells(samples, table);
   double norm2 = 0;
   for (const Block& block : blocks) norm2 += block.weight * block.value * block.value;
@@ -136,7 +136,8 @@ void DistributionFit::add_lobe(DistributionLobes& lobes) const {
   }
   std::vector<LobeShape> candidates;
   for (const Vector3d& axis : axes)
-    for (double bandwidth = 0.25; bandwidth < 2e7; bandwidth *= isotropic_ ? 2 : 4)
+    for (double bandwidth = 0.25; bandwidth < std::min(2e7, limits_.max_bandwidth);
+         bandwidth *= isotropic_ ? 2 : 4)
       candidates.push_back(round_lobe(axis, bandwidth));
   const Eigen::MatrixXd samples = sample_lobes(target_, candidates);
   const Eigen::VectorXd along = (samples.transpose() * residual.col(0)).cwiseMax(0.0);

@@ -24,11 +24,14 @@ namespace {
 /// Ashikhmin-Shirley, the same times Schlick's factor of zero normal reflectance.
 class ParametricModel {
  public:
-  ParametricModel(SpecularModel model, const BrdfSamples& samples)
-      : samples_(samples), columns_(model == SpecularModel::ashikhmin_shirley ? 3 : 2) {
+  /// `unit` is what the samples' values were divided by.
+  ParametricModel(SpecularModel model, const BrdfSamples& samples, double unit)
+      : samples_(samples),
+        unit_(unit),
+        columns_(model == SpecularModel::ashikhmin_shirley ? 3 : 2) {
     material_.model = model;
     for (const BrdfPair& pair : samples.pairs)
-      norm2_ += double((pair.weight * pair.value).square().sum());
+      norm2_ += (double(pair.weight) * pair.value.cast<double>()).square().sum();
   }
 
   /// The best material of a roughness; the residuals, relative, if asked for.
@@ -46,8 +49,7 @@ class ParametricModel {
     const Eigen::MatrixXd gram = columns.transpose() * columns;
     const Eigen::MatrixXd right = columns.transpose() * value;
     Eigen::MatrixXd factors(columns_, 3);
-    std::vector<int> passive;
-    for (int c = 0; c < 3; ++c) factors.col(c) = solve_nonnegative(gram, right.col(c), passive);
+    for (int c = 0; c < 3; ++c) factors.col(c) = solve_factors(gram, right.col(c));
     const Eigen::MatrixXd residual = (columns * factors - value) / std::sqrt(norm2_);
     square = residual.squaredNorm();
     if (residuals) Eigen::Map<Eigen::MatrixXd>(residuals, rows, 3) = residual;
@@ -58,6 +60,22 @@ class ParametricModel {
   int residuals() const { return 3 * static_cast<int>(samples_.pairs.size()); }
 
  private:
+  /// Factors >= 0; with diffuse held where it would be above 1.
+  Eigen::VectorXd solve_factors(const Eigen::MatrixXd& gram, const Eigen::VectorXd& right) const {
+    std::vector<int> passive;
+    Eigen::VectorXd factors = solve_nonnegative(gram, right, passive);
+    const Eigen::Index others = columns_ - 1;
+    if (unit_ * factors[0] > 1) {
+      factors[0] = 1 / unit_;
+      passive.clear();
+      factors.tail(others) =
+          solve_nonnegative(gram.bottomRightCorner(others, others),
+                            right.tail(others) - factors[0] * gram.col(0).tail(others), passive);
+    }
+    factors.tail(others) = factors.tail(others).cwiseMin(double(kMaxSpecular) / unit_);
+    return factors;
+  }
+
   Eigen::MatrixXd sample(Material material) const {
     Eigen::MatrixXd columns(samples_.pairs.size(), columns_);
     material.specular = Rgb::Ones();
@@ -73,7 +91,8 @@ class ParametricModel {
     return columns;
   }
 
-  void set_reflectances(const Eigen::MatrixXd& factors, Material& material) const {
+  void set_reflectances(const Eigen::MatrixXd& relative, Material& material) const {
+    const Eigen::MatrixXd factors = unit_ * relative;
     for (int c = 0; c < 3; ++c) {
       material.diffuse[c] = static_cast<float>(std::min(factors(0, c), 1.0));
       double specular = factors(1, c);
@@ -88,6 +107,7 @@ class ParametricModel {
   }
 
   const BrdfSamples& samples_;
+  double unit_;
   int columns_;
   Material material_;
   double norm2_ = 0;
@@ -133,9 +153,10 @@ Material fit_parametric_brdf(const MeasuredBrdf& measured, SpecularModel model,
     throw Error(ErrorKind::input, "measured BRDF",
                 "a parametric fit of another model, expected ward or ashikhmin_shirley");
   // Few unknowns: a coarser table will do.
-  const BrdfSamples samples =
+  BrdfSamples samples =
       sample_brdf(measured, {options.resolution / 2, options.max_angle_rad, 1 << 15, 0});
-  const ParametricModel parametric(model, samples);
+  const double unit = normalize_values(samples, options);
+  const ParametricModel parametric(model, samples, unit);
   Eigen::Vector2d log_alpha = scan_roughness(parametric, samples.isotropic);
   using Cost = ceres::DynamicNumericDiffCostFunction<RoughnessCost, ceres::CENTRAL>;
   ceres::NumericDiffOptions steps;

@@ -117,6 +117,18 @@ Eigen::VectorXd solve_held(const Eigen::MatrixXd& matrix, const Eigen::VectorXd&
   return x;
 }
 
+/// The same with at most `most` as the last entry: beyond it, the others are solved beside it.
+Eigen::VectorXd solve_bounded(const Normal& normal, int side, double most) {
+  const Eigen::VectorXd right = normal.right.col(side);
+  Eigen::VectorXd x = solve_held(normal.matrix, right);
+  const Eigen::Index last = x.size() - 1;
+  if (x[last] <= most) return x;
+  x[last] = most;
+  x.head(last) = solve_held(normal.matrix.topLeftCorner(last, last),
+                            right.head(last) - most * normal.matrix.col(last).head(last));
+  return x;
+}
+
 void improve_color(const BrdfRows& rows, const std::vector<float>& distribution,
                    SmoothFactor& smooth) {
   const Normal zero(kNodes + 1, 3);
@@ -136,7 +148,7 @@ void improve_color(const BrdfRows& rows, const std::vector<float>& distribution,
   });
   add_smoothness(normal);
   for (int c = 0; c < 3; ++c) {
-    const Eigen::VectorXd x = solve_held(normal.matrix, normal.right.col(c));
+    const Eigen::VectorXd x = solve_bounded(normal, c, smooth.max_diffuse);
     smooth.color.col(c) = x.head(kNodes);
     smooth.diffuse[c] = x[kNodes];
   }
@@ -184,7 +196,7 @@ BrdfRows::BrdfRows(const BrdfSamples& all) : samples(all), place(all.pairs.size(
     const BrdfPair& pair = samples.pairs[i];
     place[i] = {place_of(pair.cos_difference), place_of(pair.outgoing.z()),
                 place_of(pair.incoming.z())};
-    norm2 += double((pair.weight * pair.value).square().sum());
+    norm2 += (double(pair.weight) * pair.value.cast<double>()).square().sum();
   }
 }
 

@@ -13,6 +13,7 @@ struct SmoothFactor {
   Eigen::Array3d diffuse = Eigen::Array3d::Zero();
   Eigen::Matrix<double, Eigen::Dynamic, 3> color;  ///< F, at even angles of 0..pi / 2
   Eigen::VectorXd masking;                         ///< S, likewise
+  double max_diffuse = 1;                          ///< in the values' unit
 };
 
 /// F = 1 and S = 1 / sqrt(cos), held near the horizon.
