@@ -52,7 +52,7 @@ TEST(FitBrdfCommand, WritesAMaterialAPictureAndTheFigures) {
   const RunResult result = run("a", "1");
   ASSERT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
-  EXPECT_NE(result.out.find("CSV: brushed plate, anisotropic, 1 lobes"), std::string::npos)
+  EXPECT_NE(result.out.find("CSV: brushed plate, anisotropic, lobes: 1,"), std::string::npos)
       << result.out;
   for (const char* name : {"fitted", "Ward", "Ashikhmin-Shirley"})
     EXPECT_NE(result.out.find(name), std::string::npos) << result.out;

@@ -96,6 +96,7 @@ void write_material(const Options& options, const MeasuredBrdf& measured, const 
 void run(Options options) {
   require_writable(std::vector{options.output, options.preview, options.common.report});
   Work work(options.common);
+  options.fit.subject = options.measured;
   options.fit.max_angle_rad = options.max_angle_degrees * kPi<double> / 180;
   const MeasuredBrdf measured = read_measured_brdf(options.measured);
   const Stopwatch watch;
@@ -112,12 +113,16 @@ void run(Options options) {
               options.preview);
   write_json(options.common.report,
              report(options, measured, fit, others, bound, seconds, work.threads()));
-  work.print(fmt::format("{}: {}{}{}, {} lobes in {:.1f} s", measured.format, measured.description,
+  work.print(fmt::format("{}: {}{}{}, lobes: {}, {:.1f} s", measured.format, measured.description,
                          measured.description.empty() ? "" : ", ",
                          measured.isotropic ? "isotropic" : "anisotropic",
                          fit.material.fitted->lobes.size(), seconds));
   work.print(error_line("fitted", fit.error));
   for (const Parametric& other : others) work.print(error_line(other.name, other.error));
+  for (const Parametric& other : others)
+    if (fit.error.relative_l2 > other.error.relative_l2)
+      work.print(
+          fmt::format("warning: the best {} material is closer than the fitted one", other.name));
   if (bound > 0)
     work.print(fmt::format("{:<18} relative L2 error {:5.1f} %: the data are not reciprocal",
                            "any material", 100 * bound));
