@@ -95,5 +95,18 @@ TEST(FitBrdfCommand, BrokenTablesLeaveNoOutput) {
   EXPECT_FALSE(std::filesystem::exists(output));
 }
 
+TEST(FitBrdfCommand, TablesOfGrazingAnglesAloneAreNamedAsSuch) {
+  const ScratchFolder folder;
+  const std::string path = folder.file("plate.csv"), output = folder.file("a.json");
+  write_whole_file(path, "theta_i,phi_i,theta_o,phi_o,r,g,b\n82,0,89,180,1,1,1\n");
+  const RunResult result = burnish({"fit-brdf", path, "-o", output});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_NE(result.err.find("plate.csv: no samples within 80 degrees of the normal; see "
+                            "--max-angle"),
+            std::string::npos)
+      << result.err;
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
 }  // namespace
 }  // namespace burnish::test

@@ -208,6 +208,9 @@ TEST(RglBrdf, BadFieldsAreNamedWithWhatIsExpected) {
   expect(1, float_field("phi_i", {3}, one), "'phi_i': element 1 is 1");
   expect(1, float_field("phi_i", {3}, [](std::uint64_t i) { return double(i) / 4; }),
          "'phi_i': azimuths over 0.5");
+  // A half of the circle, but not the half that is read.
+  expect(1, float_field("phi_i", {3}, [](std::uint64_t i) { return double(i) / 2 * kPi<double>; }),
+         "'phi_i': the first azimuth is 0");
   expect(2, float_field("theta_i", {kAngles}, [](std::uint64_t i) { return double(i); }),
          "'theta_i': element 2");
   expect(2, float_field("theta", {kAngles}, one), "'theta_i': is missing");

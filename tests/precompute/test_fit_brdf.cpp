@@ -4,8 +4,10 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <memory>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -137,6 +139,75 @@ TEST(FitBrdf, FindsThemInIrregularSamples) {
   expect_two_threads(fit.material, truth);
   // At pairs that it has not seen.
   EXPECT_LT(measure_brdf_fit(measurement_of(truth), fit.material, quick(2)).relative_l2, 0.02);
+}
+
+/// Grey samples value(half vector's cosine) at random directions to 75 degrees from the normal.
+template <class Value>
+MeasuredBrdf sparse_samples(int count, const Value& value) {
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<float> uniform;
+  const auto direction = [&] {
+    const float z = 0.26f + 0.74f * uniform(random), azimuth = 2 * kPi<float> * uniform(random);
+    const float r = std::sqrt(1 - z * z);
+    return Vector3f(r * std::cos(azimuth), r * std::sin(azimuth), z);
+  };
+  MeasuredBrdf measured;
+  for (int i = 0; i < count; ++i) {
+    const Vector3f outgoing = direction(), incoming = direction();
+    const Rgb grey = Rgb::Constant(value((outgoing + incoming).normalized().z()));
+    measured.samples.push_back({outgoing, incoming, grey});
+  }
+  return measured;
+}
+
+double error_of_ward(const MeasuredBrdf& measured) {
+  return measure_brdf_fit(measured, fit_parametric_brdf(measured, SpecularModel::ward)).relative_l2;
+}
+
+// Some tens of samples see the widest peak, hardly any the narrowest.
+TEST(FitBrdf, SparseSamplesOfANarrowPeakAreFollowedAsWellAsWardDoes) {
+  SCOPED_TRACE(testing::Message() << "seed " << kSeed);
+  for (const float bandwidth : {100.0f, 1e3f, 1e4f, 1e5f}) {
+    SCOPED_TRACE(bandwidth);
+    const MeasuredBrdf peak = sparse_samples(
+        3000, [&](float z) { return 0.1f + 10 * std::exp(-bandwidth * (1 - z * z)); });
+    const BrdfFit fit = fit_brdf(peak);
+    // 1 %: where no sample sees the peak, either fits the rest to less than that.
+    EXPECT_LT(fit.error.relative_l2, error_of_ward(peak) + 0.01);
+    EXPECT_LT(fit.error.relative_l2, 0.05);
+    for (const AnisotropicGaussian<float>& lobe : fit.material.fitted->lobes)
+      EXPECT_LT(std::max(lobe.bandwidth_x, lobe.bandwidth_y),
+                2e4f);  // the samples' spacing allows 7e3
+  }
+  // No lobe suits a disc; Ward's is the best of those about the normal.
+  const MeasuredBrdf disc =
+      sparse_samples(3000, [](float z) { return z > std::cos(0.05f) ? 10.1f : 0.1f; });
+  EXPECT_LT(fit_brdf(disc).error.relative_l2, error_of_ward(disc) + 0.01);
+}
+
+TEST(FitBrdf, ValuesOfAnySizeAreFittedAlike) {
+  const auto peak = [](float z) { return 0.1f + 10 * std::exp(-100 * (1 - z * z)); };
+  for (const float scale : {1e-24f, 1e-6f, 1.0f, 1e6f, 1e20f}) {
+    SCOPED_TRACE(scale);
+    const MeasuredBrdf measured = sparse_samples(3000, [&](float z) { return scale * peak(z); });
+    const BrdfFit fit = fit_brdf(measured);
+    // The truth is a lobe and a constant; beyond 1, a wide lobe stands for the constant.
+    EXPECT_LT(fit.error.relative_l2, 0.01);
+    EXPECT_EQ(domain_error(fit.material), "");
+    EXPECT_LE(fit.material.diffuse.maxCoeff(), 1);
+    const Material ward = fit_parametric_brdf(measured, SpecularModel::ward);
+    EXPECT_EQ(domain_error(ward), "");
+  }
+}
+
+// Diffuse cannot be above 1: lobes take the rest, which a cut would lose.
+TEST(FitBrdf, LobesTakeWhatIsBeyondAWhiteDiffusePart) {
+  for (const float albedo : {3.0f, 10.0f}) {
+    SCOPED_TRACE(albedo);
+    const BrdfFit fit = fit_brdf(sparse_samples(3000, [&](float) { return albedo / kPi<float>; }));
+    EXPECT_LT(fit.error.relative_l2, 0.05);  // a lobe ends at the horizon: 1 to 2 %
+    EXPECT_LE(fit.material.diffuse.maxCoeff(), 1);
+  }
 }
 
 TEST(FitBrdf, LobesThatGainNothingAreLeftOut) {
@@ -285,6 +356,19 @@ TEST(FitBrdf, BadInputIsRefusedAndWorkCanBeStopped) {
   MeasuredBrdf black;
   black.eval = [](const Vector3f&, const Vector3f&) -> Rgb { return Rgb::Zero(); };
   EXPECT_THROW(fit_brdf(black, quick(1)), Error);
+  BrdfFitOptions narrow = quick(1);
+  narrow.max_angle_rad = 0.1;
+  narrow.subject = "plate.csv";
+  MeasuredBrdf grazing;
+  grazing.samples.push_back({Vector3f(0.6f, 0, 0.8f), Vector3f(-0.6f, 0, 0.8f), Rgb::Ones()});
+  try {
+    fit_brdf(grazing, narrow);
+    ADD_FAILURE() << "no error";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(),
+                 "plate.csv: no samples within 5.73 degrees of the normal; see --max-angle");
+  }
+  EXPECT_THROW(fit_parametric_brdf(grazing, SpecularModel::ward, narrow), Error);
   for (const int lobes : {0, kMaxFittedLobes + 1})
     EXPECT_THROW(fit_brdf(metal, quick(lobes)), Error) << lobes;
   for (const int resolution : {31, 513}) {
@@ -307,12 +391,18 @@ TEST(FitBrdf, BadInputIsRefusedAndWorkCanBeStopped) {
   EXPECT_EQ(asked, 3);
 }
 
-// docs/materials.md has the figures; of each file the fit is closer than either model.
+/// Relative L2 errors of three lobes to 80 degrees, from docs/materials.md.
+const std::map<std::string, double> kErrorOfFile = {
+    {"cc_ibiza_sunset_rgb", 0.261}, {"chm_mint_rgb", 0.444},     {"ilm_solo_m_68_rgb", 0.311},
+    {"paper_blue_rgb", 0.062},      {"satin_purple_rgb", 0.229}, {"satin_rosaline_rgb", 0.270}};
+
+// Of each file the fit is closer than either model.
 TEST(FitBrdf, BeatsWardAndAshikhminOnMeasuredFiles) {
   const char* shared = std::getenv("BURNISH_SHARED_DATA");
   const std::filesystem::path folder =
       std::filesystem::path(shared ? shared : BURNISH_SOURCE_DIR "/../shared/data") / "brdf";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no folder " << folder;
+  if (!std::filesystem::exists(folder))
+    GTEST_SKIP() << "no folder " << folder << "; set BURNISH_SHARED_DATA";
   int files = 0;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".bsdf") continue;
@@ -321,7 +411,10 @@ TEST(FitBrdf, BeatsWardAndAshikhminOnMeasuredFiles) {
     const MeasuredBrdf measured = read_measured_brdf(entry.path().string());
     const double found = fit_brdf(measured).error.relative_l2;
     EXPECT_GE(found, 0.99 * reciprocity_bound(measured));  // of other pairs: by chance
-    EXPECT_LT(found, 0.46);
+    const auto known = kErrorOfFile.find(entry.path().stem().string());
+    if (known != kErrorOfFile.end()) {
+      EXPECT_LT(found, known->second + 0.005);  // the figures have three digits
+    }
     for (const SpecularModel model : {SpecularModel::ward, SpecularModel::ashikhmin_shirley})
       EXPECT_LT(found,
                 measure_brdf_fit(measured, fit_parametric_brdf(measured, model)).relative_l2);

@@ -121,12 +121,14 @@ class RglReader {
   int symmetry(const std::vector<float>& azimuths) const {
     const double range = double(azimuths.back()) - double(azimuths.front());
     const double parts = 2 * kPi<double> / range;
-    constexpr double kRounding = 1e-3;
-    if (std::abs(double(azimuths.front()) + kPi<double>) > kRounding)
-      file_.fail("phi_i", fmt::format("the first azimuth is {:.4g} radians, expected -pi",
-                                      azimuths.front()));
     for (const int count : {1, 2, 4})
-      if (std::abs(parts - count) < 0.05 * count) return count;
+      if (std::abs(parts - count) < 0.05 * count) {
+        constexpr double kRounding = 1e-3;
+        if (std::abs(double(azimuths.front()) + kPi<double>) > kRounding)
+          file_.fail("phi_i", fmt::format("the first azimuth is {:.4g} radians, expected -pi",
+                                          azimuths.front()));
+        return count;
+      }
     file_.fail("phi_i", fmt::format("azimuths over {:.4g} radians, expected the circle, its half "
                                     "or its quarter",
                                     range));
