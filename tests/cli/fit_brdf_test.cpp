@@ -56,6 +56,10 @@ TEST(FitBrdfCommand, WritesAMaterialAPictureAndTheFigures) {
       << result.out;
   for (const char* name : {"fitted", "Ward", "Ashikhmin-Shirley"})
     EXPECT_NE(result.out.find(name), std::string::npos) << result.out;
+  // Ward's model made the table.
+  EXPECT_NE(result.out.find("warning: the best Ward material is closer"), std::string::npos)
+      << result.out;
+  EXPECT_EQ(result.out.find("best Ashikhmin-Shirley"), std::string::npos) << result.out;
 
   const MaterialFile file = read_material_file(folder.file("a.json"));
   EXPECT_EQ(file.name, "brushed plate");
