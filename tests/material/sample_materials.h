@@ -84,6 +84,17 @@ inline std::vector<NamedMaterial> all_materials() {
   return list;
 }
 
+/// Those that a predicate of a Material takes.
+template <class Predicate>
+std::vector<NamedMaterial> materials_that(const Predicate& predicate) {
+  std::vector<NamedMaterial> list = all_materials();
+  std::erase_if(list, [&](const NamedMaterial& sample) { return !predicate(sample.material); });
+  return list;
+}
+
+/// Whose D has alphas.
+inline bool has_alphas(const Material& material) { return material.model != SpecularModel::fitted; }
+
 inline Vector3f from_angles(double theta_deg, double phi_deg) {
   const double t = theta_deg * kPi<double> / 180, p = phi_deg * kPi<double> / 180;
   return Vector3d(std::sin(t) * std::cos(p), std::sin(t) * std::sin(p), std::cos(t)).cast<float>();

@@ -93,8 +93,12 @@ TEST_P(SpecularSampling, FollowsItsPdf) {
   }
 }
 
-TEST_P(SpecularSampling, OfNarrowLobesFollowsItsPdf) {
-  if (material.model == SpecularModel::fitted) GTEST_SKIP() << "has no alpha";
+class SamplingWithAlphas : public SpecularSampling {};
+INSTANTIATE_TEST_SUITE_P(Of, SamplingWithAlphas,
+                         testing::ValuesIn(test::materials_that(test::has_alphas)),
+                         [](const auto& info) { return info.param.name; });
+
+TEST_P(SamplingWithAlphas, OfNarrowLobesFollowsItsPdf) {
   constexpr int kTests = 2 * 27;
   Material narrow = material;
   narrow.alpha_x = 0.004f;

@@ -75,16 +75,6 @@ std::vector<Block> join_cells(const BrdfSamples& samples, const CellTarget& tabl
   return blocks;
 }
 
-LobeShape round_lobe(const Vector3d& axis, double bandwidth) {
-  const Frame<double> frame = frame_from_axis(axis);
-  Eigen::Matrix3d rotation;
-  rotation << frame.x, frame.y, frame.z;
-  LobeShape shape;
-  shape.rotation = Eigen::Quaterniond(rotation).normalized();
-  shape.log_bandwidth.setConstant(std::log(bandwidth));
-  return shape;
-}
-
 }  // namespace
 
 std::vector<AnisotropicGaussian<double>> DistributionLobes::mixture() const {

@@ -15,6 +15,7 @@
 #include <Eigen/Cholesky>
 #include <tbb/parallel_for.h>
 
+#include "burnish/sphere/frame.h"
 #include "light_fit/nonnegative_least_squares.h"
 
 namespace burnish {
@@ -34,6 +35,16 @@ Eigen::Matrix<double, 3, 4> rotate_back_derivative(const Eigen::Quaterniond& q, 
 }
 
 }  // namespace
+
+LobeShape round_lobe(const Vector3d& axis, double bandwidth) {
+  const Frame<double> frame = frame_from_axis(axis);
+  Eigen::Matrix3d rotation;
+  rotation << frame.x, frame.y, frame.z;
+  LobeShape shape;
+  shape.rotation = Eigen::Quaterniond(rotation).normalized();
+  shape.log_bandwidth.setConstant(std::log(bandwidth));
+  return shape;
+}
 
 void sample_lobe(const LightFitTarget& target, const double* rotation, const double* log_bandwidth,
                  Eigen::Ref<Eigen::VectorXd> value, double* derivative_values) {

@@ -16,6 +16,8 @@ struct LobeShape {
   Eigen::Vector2d log_bandwidth = Eigen::Vector2d::Zero();  ///< natural logarithm, along x and y
 };
 
+LobeShape round_lobe(const Vector3d& axis, double bandwidth);
+
 /// What the mixture is fitted to: the map's cells (a row each, weighted by solid angle), then its
 /// irradiance on a set of normals. Both are scaled so that the target's norm is 1 over the cells
 /// and the irradiance weight over the normals: half the squared residual is then the squared

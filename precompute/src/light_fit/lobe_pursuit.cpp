@@ -21,16 +21,6 @@ constexpr double kNarrowBandwidths[] = {32, 128, 512, 2048, 8192};
 constexpr int kWideDirections = 256;  // as far apart as the narrowest of the wide lobes is wide
 constexpr int kNarrowDirections = 48;
 
-LobeShape round_lobe(const Vector3d& axis, double bandwidth) {
-  const Frame<double> frame = frame_from_axis(axis);
-  Eigen::Matrix3d rotation;
-  rotation << frame.x, frame.y, frame.z;
-  LobeShape shape;
-  shape.rotation = Eigen::Quaterniond(rotation).normalized();
-  shape.log_bandwidth.setConstant(std::log(bandwidth));
-  return shape;
-}
-
 // The cells where the residual's density is highest.
 std::vector<int> strongest_cells(const LightFitTarget& target, const LightFitResidual& residual) {
   const Eigen::Index cells = target.cells();
