@@ -124,7 +124,7 @@ float distribution_over_lobes(const PreparedMaterial& prepared, const Vector3f& 
 
 /// The rule for n.i is exact where that is linear; where it is not, a node may be just below the
 /// horizon.
-void lift_node(Node& node) {
+void hold_above_horizon(Node& node) {
   constexpr float kLowest = 1e-3f;
   if (node.incoming.z() >= kLowest) return;
   Vector3f lifted = node.incoming;
@@ -216,7 +216,7 @@ SliceLobe match_moments(const PreparedMaterial& prepared, const SpecularTooth& t
     const Eigen::Vector2f place =
         plan.rule.point[j % 3] * plan.along + across.point[j / 3] * plan.across;
     Node node = make_node(frame, o, outgoing, place.x(), place.y());
-    lift_node(node);
+    hold_above_horizon(node);
     const Rgb weight =
         plan.rule.weight[j % 3] * across.weight[j / 3] * node_weight(prepared, outgoing, node);
     offset[j] = node.offset;
@@ -229,8 +229,8 @@ SliceLobe match_moments(const PreparedMaterial& prepared, const SpecularTooth& t
   mean /= total;
   const Vector3f axis = (2 * o.z() * frame.z - outgoing + mean).normalized();
   const Frame<float> tangent = frame_from_axis(axis);
-  constexpr float kEven =
-      0.02f;  // of the nodes without f: a width, where all but one weigh nothing
+  // A share that all nodes have alike: a width, where all but one of them weigh nothing.
+  constexpr float kEven = 0.02f;
   float xx = 0, xy = 0, yy = 0;
   for (size_t j = 0; j < count; ++j) {
     const Vector3f from_mean = offset[j] - mean;

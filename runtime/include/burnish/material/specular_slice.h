@@ -15,12 +15,10 @@ namespace burnish {
 enum class SpecularForm {
   /// The second derivatives at its peak; M and the cosine there, out of the integral (xu2013asg,
   /// Eq. 23-30), with the paper's lobes for Ward's and Ashikhmin's D. Nothing where the peak is
-  /// below
-  /// the horizon.
+  /// below the horizon.
   peak,
   /// The mass, mean and covariance of f times the cosine over its part above the horizon, from six
-  /// to
-  /// nine half vectors.
+  /// to nine half vectors.
   moments,
 };
 
