@@ -141,8 +141,9 @@ BenchRow measure_bake(const ProceduralScene& scene, const Options& options, Work
   if (options.subject.reference_samples == 0) return row;
   // The truth is of the diffuse part alone: it tells the visibility apart from the highlights.
   std::vector<Material> diffuse(1);
-  const Subject subject = {&transfer, diffuse, {}};
-  const StudioLight studio = make_studio_light({}, work);
+  const PreparedTransfer prepared = prepare_transfer(transfer);
+  const Subject subject = {&transfer, diffuse, {}, nullptr, &prepared};
+  const StudioLight studio = make_studio_light(prepared, {}, work);
   row.update(
       error_report(vertex_error(subject, studio, scene.camera.origin, {}, options.subject, work)));
   return row;

@@ -42,8 +42,9 @@ std::vector<Look> looks_of(const ProceduralScene& scene) {
 }
 
 BenchRow bench_look(const Options& options, const ProceduralScene& scene, const Look& look,
-                    const Transfer& transfer, const StudioLight& studio, Work& work) {
-  const Subject subject = {&transfer, look.materials, look.material_id};
+                    const Transfer& transfer, const PreparedTransfer& prepared,
+                    const StudioLight& studio, Work& work) {
+  const Subject subject = {&transfer, look.materials, look.material_id, nullptr, &prepared};
   const Vector3f& eye = scene.camera.origin;
   const Timing timing = measure(
       options.bench, [&] { shade_all_vertices(subject, studio.lighting(), eye, options.shading); });
@@ -55,7 +56,7 @@ BenchRow bench_look(const Options& options, const ProceduralScene& scene, const 
   add_timing(row, timing, options.bench);
   row["ns_per_vertex"] = timing.median_s * 1e9 / vertices;
   row["vertices_per_s"] = vertices / timing.median_s;
-  row["coefficient_bytes"] = transfer.coefficients.size() * sizeof(float);
+  row["bytes_per_vertex"] = prepared.bytes_per_vertex();
   if (options.subject.reference_samples > 0)
     row.update(
         error_report(vertex_error(subject, studio, eye, options.shading, options.subject, work)));
@@ -69,10 +70,11 @@ void run(const Options& options) {
   const ProceduralScene scene = load_subject(options.subject.name);
   const Transfer transfer =
       bake(scene.mesh, {}, options.subject.bake, {.progress = work.progress()});
-  const StudioLight studio = make_studio_light(options.shading, work);
+  const PreparedTransfer prepared = prepare_transfer(transfer);
+  const StudioLight studio = make_studio_light(prepared, options.shading, work);
   std::vector<BenchRow> rows;
   for (const Look& look : looks_of(scene))
-    rows.push_back(bench_look(options, scene, look, transfer, studio, work));
+    rows.push_back(bench_look(options, scene, look, transfer, prepared, studio, work));
   report_bench("shade", rows, options.bench, work);
 }
 

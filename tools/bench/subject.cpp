@@ -37,10 +37,11 @@ ProceduralScene load_subject(const std::string& name) {
   return scene;
 }
 
-StudioLight make_studio_light(const ShadingOptions& options, Work& work) {
+StudioLight make_studio_light(const PreparedTransfer& transfer, const ShadingOptions& options,
+                              Work& work) {
   StudioLight studio;
   studio.map = studio_environment();
-  studio.lights = prepare_lights(fit_light(studio.map, {}, work.progress()).rig, options);
+  studio.lights = prepare_lights(fit_light(studio.map, {}, work.progress()).rig, transfer, options);
   studio.filtered = prefilter_in_parallel(studio.map);
   throw_if_interrupted();
   return studio;

@@ -36,7 +36,8 @@ struct StudioLight {
 
   Lighting lighting() const { return {&lights, &filtered}; }
 };
-StudioLight make_studio_light(const ShadingOptions& options, Work& work);
+StudioLight make_studio_light(const PreparedTransfer& transfer, const ShadingOptions& options,
+                              Work& work);
 
 /// How far the shaded vertices are from the truth under the studio's light, seen from `eye`.
 RelativeL2 vertex_error(const Subject& subject, const StudioLight& studio, const Vector3f& eye,

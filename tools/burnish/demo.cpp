@@ -114,13 +114,14 @@ void run(const Options& options) {
   const Transfer transfer = bake_scene(options, scene, work, report);
   const Image studio = studio_environment();
   const LightRig rig = fit_studio(options, studio, work, report);
-  const PreparedLights lights = prepare_lights(rig, {});
+  const PreparedTransfer prepared = prepare_transfer(transfer);
+  const PreparedLights lights = prepare_lights(rig, prepared, {});
   const PrefilteredEnvironment filtered = prefilter_in_parallel(studio);
   const EnvironmentLight environment = {&studio};
   throw_if_interrupted();
 
   const SceneRays rays(transfer);
-  const Subject subject = {&transfer, scene.materials, scene.material_id};
+  const Subject subject = {&transfer, scene.materials, scene.material_id, nullptr, &prepared};
   const View view = {scene.camera, options.width, options.height, options.antialias};
   const PrimaryHits hits = trace_primary_rays(rays, view);
   const Picture baked =

@@ -52,9 +52,10 @@ LightFile load_lights(const LookOptions& options, const Image& environment, Work
 }
 
 /// Lights of a file are sound as read; those fitted to a map of extreme values may be too bright.
-PreparedLights checked_lights(const LightRig& rig, const LookOptions& options) {
+PreparedLights checked_lights(const LightRig& rig, const PreparedTransfer& transfer,
+                              const LookOptions& options) {
   try {
-    return prepare_lights(rig, options.shading);
+    return prepare_lights(rig, transfer, options.shading);
   } catch (const std::invalid_argument& error) {
     throw Error(ErrorKind::input, options.lights.empty() ? options.environment : options.lights,
                 error.what());
@@ -127,6 +128,7 @@ Look load_look(const LookOptions& options, Work& work) {
   if (!look.transfer.bases.empty() && options.shading.terms > look.transfer.terms())
     throw UsageError(fmt::format("--terms: found {}, expected at most the {} that {} holds",
                                  options.shading.terms, look.transfer.terms(), options.transfer));
+  look.prepared = prepare_transfer(look.transfer);
   look.varying = load_textures(options, material, look.transfer);
   throw_if_interrupted();
   if (!options.environment.empty()) look.environment = load_environment(options.environment, work);
@@ -143,7 +145,7 @@ Look load_look(const LookOptions& options, Work& work) {
       lights.world_from_environment;
   look.world_from_environment = lights.world_from_environment;
   look.rig = world_lights(lights);
-  look.lights = checked_lights(look.rig, options);
+  look.lights = checked_lights(look.rig, look.prepared, options);
   scale_map(look.environment, lights.scale, options);
   look.report["lobes"] = look.rig.lobes.size();
   look.report["directional_lights"] = look.rig.directionals.size();

@@ -38,6 +38,7 @@ void add_look_options(CLI::App& app, LookOptions& options);
 /// A baked mesh and all that lights it.
 struct Look {
   Transfer transfer;
+  PreparedTransfer prepared;
   Material material;                       ///< where nothing varies
   std::optional<VaryingSubject> varying;   ///< of a material with textures
   Image environment;                       ///< no pixels without --env
@@ -49,7 +50,9 @@ struct Look {
   nlohmann::ordered_json report;  ///< what was read and how long it took
 
   /// These refer to the object.
-  Subject subject() const { return {&transfer, {&material, 1}, {}, varying ? &*varying : nullptr}; }
+  Subject subject() const {
+    return {&transfer, {&material, 1}, {}, varying ? &*varying : nullptr, &prepared};
+  }
   Lighting lighting() const { return {&lights, specular_from_map ? &filtered : nullptr}; }
   EnvironmentLight environment_light() const {
     return {environment.pixels.empty() ? nullptr : &environment, world_from_environment};

@@ -50,6 +50,8 @@ struct Subject {
 
   /// Over materials[0]; null: nothing varies. Then there are no ids.
   const VaryingSubject* varying = nullptr;
+  /// Of `transfer`: what the runtime shades. The truth does without.
+  const PreparedTransfer* prepared = nullptr;
 
   size_t material_of(size_t vertex) const { return material_id.empty() ? 0 : material_id[vertex]; }
   const Material& vertex_material(size_t vertex) const { return materials[material_of(vertex)]; }

@@ -23,17 +23,7 @@ Rgb interpolate_radiance(const std::vector<Rgb>& radiance, const SurfacePoint& p
   return sum;
 }
 
-/// The weighted mean of three vertices' coefficients; `of(vertex)` points to a vertex's.
-template <class Coefficients>
-void interpolate(const SurfacePoint& surface, const Coefficients& of, std::vector<float>& result) {
-  const float* a = of(surface.vertices[0]);
-  const float* b = of(surface.vertices[1]);
-  const float* c = of(surface.vertices[2]);
-  for (size_t i = 0; i < result.size(); ++i)
-    result[i] = surface.weight[0] * a[i] + surface.weight[1] * b[i] + surface.weight[2] * c[i];
-}
-
-/// Shades interpolated points; holds the interpolated coefficients between calls.
+/// Shades points of the surface in batches: `add` any, in any order of materials, then `shade`.
 class PixelShader {
  public:
   /// `sample_angle_rad` as surface_material takes it.
@@ -41,71 +31,65 @@ class PixelShader {
               const Vector3f& eye, float sample_angle_rad, const Lighting& lighting,
               const ShadingOptions& options)
       : subject_(subject),
-        transfer_(*subject.transfer),
         materials_(materials),
         eye_(eye),
         sample_angle_rad_(sample_angle_rad),
         lighting_(lighting),
         options_(options),
-        coefficients_(static_cast<size_t>(transfer_.terms())),
-        ladder_coefficients_(static_cast<size_t>(transfer_.ladder_terms())) {}
+        batches_(materials.size()) {}
 
-  Rgb operator()(const SurfacePoint& surface) {
-    if (!subject_.varying)
-      return shade(surface, materials_[subject_.material_of(surface.vertices[0])]);
+  /// What the point adds to a pixel: weight times its radiance.
+  void add(const SurfacePoint& surface, size_t pixel, float weight) {
+    ShadingPoint point = {surface.position, surface.frame, surface.vertices, surface.weight};
+    if (!subject_.varying) {
+      Batch& batch = batches_[subject_.material_of(surface.vertices[0])];
+      batch.points.push_back(point);
+      batch.outgoing.push_back(outgoing_toward(eye_, surface.position, surface.frame.z));
+      batch.pixels.push_back({pixel, weight});
+      return;
+    }
     const SurfaceMaterial at = surface_material(subject_, surface, eye_, sample_angle_rad_);
-    SurfacePoint turned = surface;
-    turned.frame = at.frame;
-    return shade(turned, prepare_material(at.material, options_.specular));
+    point.frame = at.frame;
+    const Rgb radiance =
+        shade_point(*subject_.prepared, point, outgoing_toward(eye_, point.position, point.frame.z),
+                    prepare_material(at.material, options_.specular), lighting_, options_);
+    varied_.push_back({{pixel, weight}, radiance});
+  }
+
+  /// Adds what was added to the pixels' sums.
+  void shade(std::span<Rgb> sums) {
+    for (size_t id = 0; id < batches_.size(); ++id) {
+      Batch& batch = batches_[id];
+      radiance_.resize(batch.points.size());
+      shade_points(*subject_.prepared, batch.points, batch.outgoing, materials_[id], lighting_,
+                   options_, radiance_);
+      for (size_t i = 0; i < radiance_.size(); ++i)
+        sums[batch.pixels[i].first] += batch.pixels[i].second * radiance_[i];
+      batch.points.clear();
+      batch.outgoing.clear();
+      batch.pixels.clear();
+    }
+    for (const auto& [place, radiance] : varied_) sums[place.first] += place.second * radiance;
+    varied_.clear();
   }
 
  private:
-  Rgb shade(const SurfacePoint& surface, const PreparedMaterial& material) {
-    const Vector3f outgoing = outgoing_toward(eye_, surface.position, surface.frame.z);
-    const auto& [a, b, c] = surface.vertices;
-    if (transfer_.bases.empty() || (transfer_.basis_id[a] == transfer_.basis_id[b] &&
-                                    transfer_.basis_id[a] == transfer_.basis_id[c]))
-      return shade_point(interpolated_point(surface), outgoing, material, lighting_, options_);
-    // Coefficients of different bases cannot be mixed; the radiance they give can.
-    Rgb sum = Rgb::Zero();
-    for (int i = 0; i < 3; ++i)
-      sum += surface.weight[i] * shade_point(point_like_vertex(surface, surface.vertices[i]),
-                                             outgoing, material, lighting_, options_);
-    return sum;
-  }
-
-  /// The surface point with the visibility of a vertex.
-  ShadingPoint point_like_vertex(const SurfacePoint& surface, std::uint32_t vertex) const {
-    ShadingPoint point = vertex_shading_point(transfer_, vertex);
-    point.position = surface.position;
-    point.frame = surface.frame;
-    return point;
-  }
-
-  /// The surface point with interpolated coefficients, all three corners being of one basis.
-  ShadingPoint interpolated_point(const SurfacePoint& surface) {
-    ShadingPoint point = point_like_vertex(surface, surface.vertices[0]);
-    if (point.basis) {
-      const auto of = [&](std::uint32_t v) { return transfer_.vertex_coefficients(v); };
-      interpolate(surface, of, coefficients_);
-      point.coefficients = coefficients_.data();
-    }
-    if (point.ladder) {
-      const auto of = [&](std::uint32_t v) { return transfer_.vertex_ladder_coefficients(v); };
-      interpolate(surface, of, ladder_coefficients_);
-      point.ladder_coefficients = ladder_coefficients_.data();
-    }
-    return point;
-  }
+  using PixelWeight = std::pair<size_t, float>;
+  struct Batch {
+    std::vector<ShadingPoint> points;
+    std::vector<Vector3f> outgoing;
+    std::vector<PixelWeight> pixels;
+  };
 
   const Subject& subject_;
-  const Transfer& transfer_;
   std::span<const PreparedMaterial> materials_;
   Vector3f eye_;
   float sample_angle_rad_;
   const Lighting& lighting_;
   const ShadingOptions& options_;
-  std::vector<float> coefficients_, ladder_coefficients_;
+  std::vector<Batch> batches_;  ///< by material
+  std::vector<Rgb> radiance_;
+  std::vector<std::pair<PixelWeight, Rgb>> varied_;
 };
 
 }  // namespace
@@ -116,10 +100,10 @@ std::vector<Rgb> shade_all_vertices(const Subject& subject, const Lighting& ligh
   std::vector<Rgb> radiance(subject.transfer->vertex_count());
   tbb::parallel_for(tbb::blocked_range<size_t>(0, radiance.size(), 64), [&](const auto& range) {
     if (subject.varying)
-      return shade_vertices(*subject.transfer, lighting, subject.materials[0],
+      return shade_vertices(*subject.prepared, lighting, subject.materials[0],
                             variation_of(subject.varying->vertices), eye, options, range.begin(),
                             std::span(radiance).subspan(range.begin(), range.size()));
-    shade_vertices(*subject.transfer, lighting, materials, subject.material_id, eye, options,
+    shade_vertices(*subject.prepared, lighting, materials, subject.material_id, eye, options,
                    range.begin(), std::span(radiance).subspan(range.begin(), range.size()));
   });
   return radiance;
@@ -147,24 +131,27 @@ Picture render(const Subject& subject, const PrimaryHits& hits, const Lighting& 
   picture.hit.assign(picture.radiance.pixels.size(), 0);
   tbb::parallel_for(tbb::blocked_range<size_t>(0, picture.hit.size(), 256), [&](const auto& range) {
     PixelShader shade_pixel(subject, materials, eye, sample_angle_rad(view), lighting, options);
+    const float weight = 1 / static_cast<float>(per_pixel);
     for (size_t pixel = range.begin(); pixel < range.end(); ++pixel) {
       const std::span<const PrimaryHit> samples = hits.pixel_hits(pixel);
-      Rgb sum = Rgb::Zero();
+      Rgb& sum = picture.radiance.pixels[pixel];
       size_t met = 0;
       for (size_t i = 0; i < per_pixel; ++i) {
         if (samples[i].triangle == PrimaryHit::kMiss) {
-          sum += eval_environment_light(background, hits.direction(camera, pixel, i));
+          sum += weight * eval_environment_light(background, hits.direction(camera, pixel, i));
           continue;
         }
         ++met;
         const SurfacePoint point = surface_point(*subject.transfer, samples[i], eye);
         if (!point.front) continue;
-        sum += per == ShadePer::vertex ? interpolate_radiance(vertex_radiance, point)
-                                       : shade_pixel(point);
+        if (per == ShadePer::vertex)
+          sum += weight * interpolate_radiance(vertex_radiance, point);
+        else
+          shade_pixel.add(point, pixel, weight);
       }
-      picture.radiance.pixels[pixel] = sum / float(per_pixel);
       picture.hit[pixel] = met == per_pixel;
     }
+    shade_pixel.shade(picture.radiance.pixels);
   });
   times.pixels_ms = milliseconds_since(start);
   if (timings) *timings = times;

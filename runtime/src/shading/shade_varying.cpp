@@ -2,8 +2,8 @@
 
 namespace burnish {
 
-void shade_vertices(const Transfer& transfer, const Lighting& lighting, const Material& base,
-                    const MaterialVariation& variation, const Vector3f& eye,
+void shade_vertices(const PreparedTransfer& transfer, const Lighting& lighting,
+                    const Material& base, const MaterialVariation& variation, const Vector3f& eye,
                     const ShadingOptions& options, size_t first, std::span<Rgb> radiance) noexcept {
   for (size_t i = 0; i < radiance.size(); ++i) {
     const size_t vertex = first + i;
@@ -12,8 +12,8 @@ void shade_vertices(const Transfer& transfer, const Lighting& lighting, const Ma
     point.frame = at.frame;
     const Vector3f outgoing =
         lift_above_horizon((eye - point.position).normalized(), point.frame.z);
-    radiance[i] = shade_point(point, outgoing, prepare_material(at.material, options.specular),
-                              lighting, options);
+    radiance[i] = shade_point(transfer, point, outgoing,
+                              prepare_material(at.material, options.specular), lighting, options);
   }
 }
 

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <vector>
+
+#include "burnish/light/light_rig.h"
+#include "burnish/light/prefiltered_environment.h"
+#include "burnish/shading/prepared_transfer.h"
+#include "burnish/shading/shading_options.h"
+#include "burnish/sphere/lobe_moments.h"
+
+namespace burnish {
+
+/// A lobe of light with what shading needs of its shape.
+struct PreparedLobe {
+  AnisotropicGaussian<float> lobe;  ///< unit amplitude
+  Rgb color = Rgb::Zero();          ///< radiance at the axis
+  float integral = 0;               ///< of the unit-amplitude lobe
+  LobeMoments<float> moments;       ///< of the normalised lobe, in its own frame
+  /// How much of its diffuse light comes through the ladder's table, 0..1; the rest comes through
+  /// the SSDF.
+  float ladder_share = 0;
+};
+
+/// The irradiance of all wide lobes together, seen through the ladder, as a function of the normal
+/// and of a vertex's ladder coefficients, in which it is linear (docs/maths.md, "Irradiance
+/// table").
+struct IrradianceTable {
+  static constexpr int kResolution = 32;  ///< of the octahedral map of normals
+  /// At the start of a normal's entry, by channel: what comes through the ladder's mean, and what
+  /// the ladder of a bare horizon lacks; the irradiance without shadow.
+  enum { kMean = 0, kUnshadowed = 4, kTerms = 16 };
+
+  int terms = 0;
+  std::vector<float> entries;  ///< [kResolution^2][kTerms + 3 padded_terms(terms)]
+  size_t entry_size() const { return kTerms + 3 * padded_terms(terms); }
+};
+
+/// The lobes' boundaries as a matrix product: SSDF and gradient at their axes are rows * a vertex's
+/// coefficients + mean.
+struct LobeBoundaries {
+  std::vector<float> mean;  ///< [lobes][3]: value, and derivatives along the lobe's x and y
+  std::vector<float> rows;  ///< [terms][padded_terms(3 lobes)]
+};
+
+/// Lights ready to shade the points of one transfer: prepared once per change of the lights.
+/// Immutable while shading, and may be shared between threads.
+struct PreparedLights {
+  std::vector<PreparedLobe> lobes;
+  std::vector<int> narrow;  ///< lobes of ladder_share < 1: those of `boundaries`
+  std::vector<DirectionalLight> directionals;
+  std::vector<SphereLight> spheres;
+  std::vector<RectangleLight> rectangles;
+  std::vector<LobeBoundaries> boundaries;  ///< one for each basis
+  std::vector<IrradianceTable> tables;     ///< one for each ladder; none without wide lobes
+  std::vector<float> scratch;
+};
+
+/// Leaves out black lights. Throws std::invalid_argument for a light that domain_error
+/// (lobe_domain.h, local_lights.h) objects to. The second form reuses the memory of `lights`.
+/// @{
+PreparedLights prepare_lights(const LightRig& rig, const PreparedTransfer& transfer,
+                              const ShadingOptions& options);
+void prepare_lights(const LightRig& rig, const PreparedTransfer& transfer,
+                    const ShadingOptions& options, PreparedLights& lights);
+/// @}
+
+/// What lights a frame, in the world's frame. Without an environment the specular term sees the
+/// lights' lobes instead of the map.
+struct Lighting {
+  const PreparedLights* lights = nullptr;               ///< never null
+  const PrefilteredEnvironment* environment = nullptr;  ///< may be null
+};
+
+}  // namespace burnish

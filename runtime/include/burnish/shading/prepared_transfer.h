@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "burnish/shading/transfer.h"
+
+namespace burnish {
+
+enum class CoefficientType {
+  float32,
+  float16,  ///< half the memory; what it adds to the error of the compression does not show
+};
+
+/// A transfer as the frame calls read it: prepared once, then immutable, and shared between
+/// threads. It holds all that shading needs; the transfer itself may go.
+struct PreparedTransfer {
+  /// A basis of SSDFs, its rows padded with zeros to whole vectors.
+  struct Basis {
+    std::vector<float> mean;   ///< [resolution^2]
+    std::vector<float> eigen;  ///< [resolution^2][padded_terms(terms)]
+  };
+  /// A basis of the visibility ladder as pictures of the sphere, in the directions of the grid by
+  /// which lights are integrated (prepared_lights.h), and as it was baked.
+  struct Ladder {
+    std::vector<float> images;  ///< [kLadderDirections][1 + terms]: mean first
+    LadderBasis harmonics;
+  };
+
+  std::vector<Vector3f> positions, normals, tangents;  ///< #V
+  std::vector<std::uint8_t> basis_id;                  ///< #V
+  int terms = 0, ladder_terms = 0;                     ///< 0: none
+  int resolution = 0;                                  ///< of the bases
+  float amplitude_rad = 0, ladder_crossover = 0;       ///< as in Transfer
+  std::vector<Basis> bases;
+  std::vector<Ladder> ladders;  ///< none, one, or one for each of `bases`
+
+  /// A row for each vertex: its coefficients, and then those of the ladder. One of the two is used.
+  /// @{
+  CoefficientType type = CoefficientType::float16;
+  std::vector<std::uint16_t> rows16;  ///< IEEE 754 binary16
+  std::vector<float> rows32;
+  /// @}
+
+  size_t vertex_count() const { return positions.size(); }
+  size_t row_size() const { return static_cast<size_t>(terms + ladder_terms); }
+  int ladder_of(std::uint8_t basis) const { return ladders.size() == 1 ? 0 : basis; }
+  /// Bytes that grow with the vertices.
+  size_t bytes_per_vertex() const;
+};
+
+/// `terms`, rounded up to the lanes of any vector.
+inline size_t padded_terms(int terms) { return (static_cast<size_t>(terms) + 15) / 16 * 16; }
+
+/// Coefficients beyond the range of float16, 65504, make it float32.
+PreparedTransfer prepare_transfer(const Transfer& transfer,
+                                  CoefficientType type = CoefficientType::float16);
+
+}  // namespace burnish

@@ -1,0 +1,303 @@
+// The irradiance of the points of a block, with its shadows: one point a lane.
+
+#if defined(BURNISH_SHADING_DIFFUSE_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef BURNISH_SHADING_DIFFUSE_INL_H_
+#undef BURNISH_SHADING_DIFFUSE_INL_H_
+#else
+#define BURNISH_SHADING_DIFFUSE_INL_H_
+#endif
+
+#include <hwy/highway.h>
+
+#include "burnish/shading/prepared_lights.h"
+#include "shading/visibility-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace burnish {
+namespace HWY_NAMESPACE {
+
+template <class D>
+HWY_INLINE Vector3<hn::VFromD<D>> set(D d, const Vector3f& v) {
+  return {hn::Set(d, v.x()), hn::Set(d, v.y()), hn::Set(d, v.z())};
+}
+
+/// Of a symmetric 2 x 2 matrix: the eigenvector of its larger eigenvalue, and half the eigenvalues'
+/// difference.
+template <class V>
+struct MajorAxis {
+  V x, y, radius;
+};
+
+template <class D, class V>
+HWY_INLINE MajorAxis<V> major_axis(D d, V xx, V xy, V yy) {
+  const V half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+  const V difference = hn::Mul(half, hn::Sub(xx, yy));
+  const V radius = hn::Sqrt(hn::MulAdd(difference, difference, hn::Mul(xy, xy)));
+  const auto round = hn::Eq(radius, zero);
+  const V inverse = hn::Div(one, hn::IfThenElse(round, one, radius));
+  const V cosine = hn::IfThenElse(round, one, hn::Mul(difference, inverse));
+  const V sine = hn::Mul(xy, inverse);
+  // Half angles: the larger by the root, the smaller by the sine.
+  const V dominant = hn::Sqrt(hn::Mul(half, hn::Add(one, hn::Abs(cosine))));
+  const V other = hn::Div(hn::Mul(half, sine), dominant);
+  const auto along_y = hn::Lt(cosine, zero);
+  return {hn::IfThenElse(along_y, hn::Abs(other), dominant),
+          hn::IfThenElse(along_y, hn::CopySign(dominant, sine), other), radius};
+}
+
+/// Where the product of a lobe and the clamped cosine peaks, and how wide it is there, in the
+/// lobe's frame, for a normal in that frame. The cosine is exp(kCosineSharpness n.v) up to a
+/// factor.
+template <class D, class V>
+HWY_INLINE AnisotropicGaussian<V> lobe_times_cosine(D d, V bandwidth_x, V bandwidth_y,
+                                                    const Vector3<V>& normal) {
+  constexpr float kCosineSharpness = 2.133f;  // least-squares SG of the clamped cosine
+                                              // (wang2009svbrdf)
+  const V one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), half = hn::Set(d, 0.5f);
+  const V scale = hn::Set(d, kCosineSharpness);
+  const Vector3<V> n = {hn::Mul(scale, normal.x), hn::Mul(scale, normal.y),
+                        hn::Mul(scale, normal.z)};
+  const V two_x = hn::Mul(two, bandwidth_x), two_y = hn::Mul(two, bandwidth_y);
+  // Maximum of log z - b_x x^2 - b_y y^2 + n.v on the unit sphere, by its Lagrange multiplier:
+  // |v(m)| = 1, |v| falls with m. Newton from a start below the root; the result is normalised
+  // anyway.
+  V multiplier = hn::Set(d, 2.5f);
+  Vector3<V> v = {n.x, n.y, one};
+  for (int i = 0; i < 4; ++i) {
+    const V root = hn::Sqrt(hn::MulAdd(hn::Set(d, 4.0f), multiplier, hn::Mul(n.z, n.z)));
+    const V below_x = hn::Div(one, hn::Add(two_x, multiplier));
+    const V below_y = hn::Div(one, hn::Add(two_y, multiplier));
+    const V below_m = hn::Div(one, multiplier);
+    v = {hn::Mul(n.x, below_x), hn::Mul(n.y, below_y),
+         hn::Mul(hn::Mul(half, hn::Add(n.z, root)), below_m)};
+    const V dz = hn::Mul(hn::Sub(hn::Div(one, root), v.z), below_m);
+    const V slope = hn::MulSub(
+        v.z, dz, hn::MulAdd(hn::Mul(v.x, v.x), below_x, hn::Mul(hn::Mul(v.y, v.y), below_y)));
+    const V step = hn::Div(hn::Sub(dot(v, v), one),
+                           hn::Max(hn::Mul(hn::Set(d, -2.0f), slope), hn::Set(d, 1e-6f)));
+    multiplier = hn::Min(hn::Max(hn::Add(multiplier, step), hn::Mul(hn::Set(d, 0.3f), multiplier)),
+                         hn::Mul(hn::Set(d, 3.0f), multiplier));
+  }
+  const V inverse = hn::Div(one, hn::Sqrt(dot(v, v)));
+  v = {hn::Mul(v.x, inverse), hn::Mul(v.y, inverse), hn::Mul(v.z, inverse)};
+
+  // frame_from_axis.
+  const V sign = hn::CopySign(one, v.z);
+  const V a = hn::Div(hn::Set(d, -1.0f), hn::Add(sign, v.z));
+  const V b = hn::Mul(hn::Mul(v.x, v.y), a);
+  const V sx = hn::Mul(sign, v.x);
+  const Vector3<V> tx = {hn::MulAdd(hn::Mul(sx, v.x), a, one), hn::Mul(sign, b), hn::Neg(sx)};
+  const Vector3<V> ty = {b, hn::MulAdd(hn::Mul(v.y, v.y), a, sign), hn::Neg(v.y)};
+  // Curvature of the exponent in the tangent plane; an ASG's smooth term accounts for 1 of it.
+  const Vector3<V> diagonal = {two_x, two_y,
+                               hn::Div(one, hn::Max(hn::Mul(v.z, v.z), hn::Set(d, 1e-4f)))};
+  const Vector3<V> scaled = {hn::Mul(diagonal.x, tx.x), hn::Mul(diagonal.y, tx.y),
+                             hn::Mul(diagonal.z, tx.z)};
+  const V xx = hn::Add(dot(tx, scaled), multiplier), xy = dot(ty, scaled);
+  const V yy = hn::Add(hn::MulAdd(hn::Mul(diagonal.x, ty.x), ty.x,
+                                  hn::MulAdd(hn::Mul(diagonal.y, ty.y), ty.y,
+                                             hn::Mul(hn::Mul(diagonal.z, ty.z), ty.z))),
+                       multiplier);
+  const MajorAxis<V> major = major_axis(d, xx, xy, yy);
+  AnisotropicGaussian<V> result;
+  result.x = {hn::MulAdd(major.x, tx.x, hn::Mul(major.y, ty.x)),
+              hn::MulAdd(major.x, tx.y, hn::Mul(major.y, ty.y)),
+              hn::MulAdd(major.x, tx.z, hn::Mul(major.y, ty.z))};
+  result.y = cross(v, result.x);
+  result.z = v;
+  const V middle = hn::MulSub(half, hn::Add(xx, yy), one), least = hn::Set(d, 0.05f);
+  result.bandwidth_x = hn::Max(hn::Mul(half, hn::Add(middle, major.radius)), least);
+  result.bandwidth_y = hn::Max(hn::Mul(half, hn::Sub(middle, major.radius)), least);
+  return result;
+}
+
+/// All wide lobes at once, through the ladder.
+template <class D, class T = hn::TFromD<D>>
+HWY_NOINLINE void add_table_irradiance(D d, const PreparedTransfer& transfer,
+                                       const PreparedLights& lights, const ShadingBlock<T>& block,
+                                       BlockRgb<T>& irradiance) {
+  constexpr int kResolution = IrradianceTable::kResolution;
+  BlockFootprints<T> footprints;
+  find_footprints(d, block.count, block.normal, kResolution, footprints);
+  const size_t terms = padded_terms(transfer.ladder_terms);
+  alignas(64) T sum[kBlock][8] = {};  // with shadow, then without
+  for (size_t r = 0; r < block.row_count; ++r) {
+    const VisibilityRow<T>& row = block.row[r];
+    const size_t i = row.point;
+    const IrradianceTable& table =
+        lights.tables[static_cast<size_t>(transfer.ladder_of(row.basis))];
+    size_t texel[4];
+    footprint_texels(footprints.x[i], footprints.y[i], kResolution, texel);
+    const T fx = footprints.fraction_x[i], fy = footprints.fraction_y[i];
+    const T weight[4] = {row.weight * (1 - fx) * (1 - fy), row.weight * fx * (1 - fy),
+                         row.weight * (1 - fx) * fy, row.weight * fx * fy};
+    using V = hn::VFromD<D>;
+    V total[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    for (int j = 0; j < 4; ++j) {
+      const float* entry = table.entries.data() + texel[j] * table.entry_size();
+      for (int c = 0; c < 8; ++c) sum[i][c] += weight[j] * static_cast<T>(entry[c]);
+      const V w = hn::Set(d, weight[j]);
+      const float* red = entry + IrradianceTable::kTerms;
+      for (size_t k = 0; k < terms; k += hn::Lanes(d)) {
+        const V coefficient = hn::Mul(w, hn::Load(d, row.ladder + k));
+        total[0] = hn::MulAdd(coefficient, load_floats(d, red + k), total[0]);
+        total[1] = hn::MulAdd(coefficient, load_floats(d, red + terms + k), total[1]);
+        total[2] = hn::MulAdd(coefficient, load_floats(d, red + 2 * terms + k), total[2]);
+      }
+    }
+    T products[4];
+    sum_lanes(d, total, products);
+    for (int c = 0; c < 3; ++c) sum[i][c] += products[c];
+  }
+  for (size_t i = 0; i < block.count; ++i)
+    for (size_t c = 0; c < 3; ++c) {
+      const T full = sum[i][IrradianceTable::kUnshadowed + c];
+      // Rings of the harmonics; signed lights may send less than nothing.
+      irradiance[c][i] += std::clamp(sum[i][c], std::min(full, T(0)), std::max(full, T(0)));
+    }
+}
+
+/// The narrow lobes' boundaries at their axes: value and gradient, [3 lobes][kBlock], from the
+/// matrix product; a few lobes at a time.
+template <class D, class T = hn::TFromD<D>>
+HWY_NOINLINE void find_lobe_boundaries(D d, const PreparedLights& lights,
+                                       const ShadingBlock<T>& block, size_t terms, size_t first,
+                                       size_t count, BlockArray<T>* boundaries) {
+  const size_t width = padded_terms(static_cast<int>(3 * lights.narrow.size()));
+  for (size_t j = 0; j < 3 * count; ++j)
+    for (size_t i = 0; i < block.count; ++i) boundaries[j][i] = 0;
+  alignas(64) T sums[64];
+  for (size_t r = 0; r < block.row_count; ++r) {
+    const VisibilityRow<T>& row = block.row[r];
+    const LobeBoundaries& lobes = lights.boundaries[row.basis];
+    // A vector of columns at a time: its sum stays in a register.
+    for (size_t j = 0; j < 3 * count; j += hn::Lanes(d)) {
+      const float* column = lobes.rows.data() + 3 * first + j;
+      auto even = hn::Zero(d), odd = hn::Zero(d);
+      size_t k = 0;
+      for (; k + 2 <= terms; k += 2) {
+        even = hn::MulAdd(hn::Set(d, row.ssdf[k]), load_floats(d, column + k * width), even);
+        odd =
+            hn::MulAdd(hn::Set(d, row.ssdf[k + 1]), load_floats(d, column + (k + 1) * width), odd);
+      }
+      if (k < terms)
+        even = hn::MulAdd(hn::Set(d, row.ssdf[k]), load_floats(d, column + k * width), even);
+      hn::Store(hn::Add(even, odd), d, sums + j);
+    }
+    for (size_t j = 0; j < 3 * count; ++j)
+      boundaries[j][row.point] +=
+          row.weight * (sums[j] + static_cast<T>(lobes.mean[3 * first + j]));
+  }
+}
+
+/// A lobe's boundary at its axis, taken for a great circle, as it is seen from another direction
+/// near; in the lobe's frame.
+template <class D, class V>
+HWY_INLINE Boundary<V> boundary_at(D d, V sine_at_axis, V along_x, V along_y,
+                                   const Vector3<V>& direction) {
+  const V one = hn::Set(d, 1.0f);
+  const V cosine = hn::Sqrt(hn::Max(hn::NegMulAdd(sine_at_axis, sine_at_axis, one), hn::Zero(d)));
+  const Vector3<V> pole = {hn::Mul(cosine, along_x), hn::Mul(cosine, along_y), sine_at_axis};
+  const auto has_gradient =
+      hn::Gt(hn::MulAdd(along_x, along_x, hn::Mul(along_y, along_y)), hn::Zero(d));
+  const V there = hn::Max(hn::Min(dot(pole, direction), one), hn::Neg(one));
+  const V sine = hn::IfThenElse(has_gradient, there, sine_at_axis);
+  const Vector3<V> gradient = {hn::NegMulAdd(sine, direction.x, pole.x),
+                               hn::NegMulAdd(sine, direction.y, pole.y),
+                               hn::NegMulAdd(sine, direction.z, pole.z)};
+  Boundary<V> result = {sine, unit_gradient(d, gradient, 1e-6f)};
+  result.gradient.x = hn::IfThenElseZero(has_gradient, result.gradient.x);
+  result.gradient.y = hn::IfThenElseZero(has_gradient, result.gradient.y);
+  result.gradient.z = hn::IfThenElseZero(has_gradient, result.gradient.z);
+  return result;
+}
+
+template <class D>
+HWY_INLINE LobeMoments<hn::VFromD<D>> set(D d, const burnish::LobeMoments<float>& m) {
+  return {hn::Set(d, m.mean_z),     hn::Set(d, m.mean_xx),   hn::Set(d, m.mean_yy),
+          hn::Set(d, m.variance_z), hn::Set(d, m.mean_xxz),  hn::Set(d, m.mean_yyz),
+          hn::Set(d, m.mean_zzz),   hn::Set(d, m.mean_xxxx), hn::Set(d, m.mean_yyyy),
+          hn::Set(d, m.mean_zzzz),  hn::Set(d, m.mean_xxyy), hn::Set(d, m.mean_xxzz),
+          hn::Set(d, m.mean_yyzz)};
+}
+
+/// Adds what a lobe sends to the points, of irradiance `amount` without its colour.
+template <class D, class V, class T>
+HWY_INLINE void add_color(D d, const Rgb& color, V amount, size_t i, BlockRgb<T>& sum) {
+  for (int c = 0; c < 3; ++c) {
+    T* channel = sum[static_cast<size_t>(c)].data() + i;
+    hn::Store(hn::MulAdd(hn::Set(d, color[c]), amount, hn::Load(d, channel)), d, channel);
+  }
+}
+
+/// One lobe past its boundary, of which `boundary` has value and gradient; null: past the horizon.
+template <class D, class T = hn::TFromD<D>>
+HWY_NOINLINE void add_lobe_irradiance(D d, const PreparedLobe& light, float amplitude_rad,
+                                      const BlockArray<T>* boundary, const ShadingOptions& options,
+                                      const ShadingBlock<T>& block, BlockRgb<T>& irradiance) {
+  using V = hn::VFromD<D>;
+  const AnisotropicGaussian<V> lobe = {
+      set(d, light.lobe.frame.x), set(d, light.lobe.frame.y), set(d, light.lobe.frame.z),
+      hn::Set(d, light.lobe.bandwidth_x), hn::Set(d, light.lobe.bandwidth_y)};
+  const LobeMoments<V> moments = set(d, light.moments);
+  const V integral = hn::Set(d, light.integral * (1 - light.ladder_share));
+  for (size_t i = 0; i < block.count; i += hn::Lanes(d)) {
+    const Vector3<V> world_normal = load(d, block.normal, i);
+    const Vector3<V> normal = {dot(world_normal, lobe.x), dot(world_normal, lobe.y),
+                               dot(world_normal, lobe.z)};
+    Boundary<V> at_axis = horizon(d, normal, {hn::Zero(d), hn::Zero(d), hn::Set(d, 1.0f)});
+    if (boundary) {
+      at_axis.sine = sine_of_ssdf(d, hn::Load(d, boundary[0].data() + i), amplitude_rad);
+      at_axis.gradient = unit_gradient(d,
+                                       Vector3<V>{hn::Load(d, boundary[1].data() + i),
+                                                  hn::Load(d, boundary[2].data() + i), hn::Zero(d)},
+                                       1e-4f);
+    }
+    V amount;
+    if (options.cosine == CosineModel::constant) {  // xu2013asg, Eq. 29
+      const AnisotropicGaussian<V> local = {{hn::Set(d, 1.0f), hn::Zero(d), hn::Zero(d)},
+                                            {hn::Zero(d), hn::Set(d, 1.0f), hn::Zero(d)},
+                                            {hn::Zero(d), hn::Zero(d), hn::Set(d, 1.0f)},
+                                            lobe.bandwidth_x,
+                                            lobe.bandwidth_y};
+      amount = hn::Mul(hn::Max(normal.z, hn::Zero(d)),
+                       visible_fraction(d, options.visibility, local, at_axis));
+    } else {
+      amount = mean_clamped_cosine(d, moments, normal);
+      if (boundary) {
+        const AnisotropicGaussian<V> lit =
+            lobe_times_cosine(d, lobe.bandwidth_x, lobe.bandwidth_y, normal);
+        const Boundary<V> at_lit =
+            boundary_at(d, at_axis.sine, at_axis.gradient.x, at_axis.gradient.y, lit.z);
+        amount = hn::Mul(amount, visible_share(d, options.visibility, lit, at_lit, normal));
+      }
+    }
+    add_color(d, light.color, hn::Mul(integral, amount), i, irradiance);
+  }
+}
+
+/// The environment's lobes.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void add_environment_irradiance(D d, const PreparedTransfer& transfer,
+                                           const PreparedLights& lights,
+                                           const ShadingOptions& options, size_t terms,
+                                           const ShadingBlock<T>& block, BlockRgb<T>& irradiance) {
+  if (!lights.tables.empty()) add_table_irradiance(d, transfer, lights, block, irradiance);
+  constexpr size_t kLobes = 16;
+  BlockArray<T> boundaries[3 * kLobes];
+  for (size_t first = 0; first < lights.narrow.size(); first += kLobes) {
+    const size_t count = std::min(kLobes, lights.narrow.size() - first);
+    if (!transfer.bases.empty())
+      find_lobe_boundaries(d, lights, block, terms, first, count, boundaries);
+    for (size_t j = 0; j < count; ++j)
+      add_lobe_irradiance(
+          d, lights.lobes[static_cast<size_t>(lights.narrow[first + j])], transfer.amplitude_rad,
+          transfer.bases.empty() ? nullptr : boundaries + 3 * j, options, block, irradiance);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace burnish
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,308 @@
+// What the points of a block see in a direction each, and of a lobe each: one point a lane.
+
+#if defined(BURNISH_SHADING_VISIBILITY_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef BURNISH_SHADING_VISIBILITY_INL_H_
+#undef BURNISH_SHADING_VISIBILITY_INL_H_
+#else
+#define BURNISH_SHADING_VISIBILITY_INL_H_
+#endif
+
+#include <type_traits>
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "burnish/sphere/half_space.h"
+#include "burnish/sphere/octahedral_map.h"
+#include "shading/block.h"
+#include "sphere/half_space-inl.h"
+#include "sphere/lobes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace burnish {
+namespace HWY_NAMESPACE {
+
+/// Floats as lanes of D.
+template <class D>
+HWY_INLINE hn::VFromD<D> load_floats(D d, const float* values) {
+  if constexpr (std::is_same_v<hn::TFromD<D>, float>) {
+    return hn::LoadU(d, values);
+  } else {
+    return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, D>(), values));
+  }
+}
+
+template <class D, class T>
+HWY_INLINE Vector3<hn::VFromD<D>> load(D d, const BlockVector3<T>& vectors, size_t i) {
+  return {hn::Load(d, vectors.x.data() + i), hn::Load(d, vectors.y.data() + i),
+          hn::Load(d, vectors.z.data() + i)};
+}
+
+template <class D, class V, class T>
+HWY_INLINE void store(D d, const Vector3<V>& v, BlockVector3<T>& vectors, size_t i) {
+  hn::Store(v.x, d, vectors.x.data() + i);
+  hn::Store(v.y, d, vectors.y.data() + i);
+  hn::Store(v.z, d, vectors.z.data() + i);
+}
+
+/// The nearest boundary in a direction of each point, as half a space: the sine of its distance,
+/// and its gradient, unit, or zero where there is none.
+template <class T>
+struct BlockBoundaries {
+  BlockArray<T> sine;
+  BlockVector3<T> gradient;
+};
+
+/// Where a bilinear lookup of an octahedral map falls.
+template <class T>
+struct BlockFootprints {
+  alignas(64) std::int32_t x[kBlock], y[kBlock];  ///< of the first texel, -1..resolution - 1
+  BlockArray<T> fraction_x, fraction_y;
+};
+
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void find_footprints(D d, size_t count, const BlockVector3<T>& directions,
+                                int resolution, BlockFootprints<T>& footprints) {
+  const auto n = hn::Set(d, static_cast<T>(resolution)), half = hn::Set(d, T(0.5));
+  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto uv = direction_to_octahedral(d, load(d, directions, i));
+    const auto px = hn::MulSub(uv.x, n, half), py = hn::MulSub(uv.y, n, half);
+    const auto floor_x = hn::Floor(px), floor_y = hn::Floor(py);
+    hn::Store(hn::Sub(px, floor_x), d, footprints.fraction_x.data() + i);
+    hn::Store(hn::Sub(py, floor_y), d, footprints.fraction_y.data() + i);
+    const hn::Rebind<std::int32_t, D> di;
+    if constexpr (std::is_same_v<T, float>) {
+      hn::Store(hn::ConvertTo(di, floor_x), di, footprints.x + i);
+      hn::Store(hn::ConvertTo(di, floor_y), di, footprints.y + i);
+    } else {
+      hn::StoreU(hn::DemoteTo(di, floor_x), di, footprints.x + i);
+      hn::StoreU(hn::DemoteTo(di, floor_y), di, footprints.y + i);
+    }
+  }
+}
+
+/// The texels of a footprint: (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1).
+HWY_INLINE void footprint_texels(int x, int y, int resolution, size_t (&texel)[4]) {
+  if (x >= 0 && y >= 0 && x + 1 < resolution && y + 1 < resolution) {
+    texel[0] = static_cast<size_t>(y * resolution + x);
+    texel[1] = texel[0] + 1;
+    texel[2] = texel[0] + static_cast<size_t>(resolution);
+    texel[3] = texel[2] + 1;
+    return;
+  }
+  for (int j = 0; j < 4; ++j)
+    texel[j] = static_cast<size_t>(octahedral_wrap(x + j % 2, y + j / 2, resolution));
+}
+
+/// The sums of the lanes of four vectors.
+#if HWY_TARGET == HWY_SCALAR
+template <class D, class V, class T = hn::TFromD<D>>
+HWY_INLINE void sum_lanes(D, const V (&v)[4], T (&sums)[4]) {
+  for (int j = 0; j < 4; ++j) sums[j] = hn::GetLane(v[j]);
+}
+#else
+template <class D, class V, class T = hn::TFromD<D>>
+HWY_INLINE void sum_lanes(D d, const V (&v)[4], T (&sums)[4]) {
+  constexpr size_t kLanes = hn::MaxLanes(D());
+  if constexpr (kLanes > 4) {
+    const hn::Half<D> half;
+    const auto fold = [half](V whole) HWY_ATTR {
+      return hn::Add(hn::LowerHalf(half, whole), hn::UpperHalf(half, whole));
+    };
+    const hn::VFromD<hn::Half<D>> folded[4] = {fold(v[0]), fold(v[1]), fold(v[2]), fold(v[3])};
+    sum_lanes(half, folded, sums);
+  } else if constexpr (kLanes == 4 && sizeof(T) == 4) {
+    const V ab = hn::Add(hn::InterleaveLower(d, v[0], v[1]), hn::InterleaveUpper(d, v[0], v[1]));
+    const V ce = hn::Add(hn::InterleaveLower(d, v[2], v[3]), hn::InterleaveUpper(d, v[2], v[3]));
+    hn::StoreU(hn::Add(hn::ConcatLowerLower(d, ce, ab), hn::ConcatUpperUpper(d, ce, ab)), d, sums);
+  } else {
+    for (int j = 0; j < 4; ++j) sums[j] = hn::GetLane(hn::SumOfLanes(d, v[j]));
+  }
+}
+#endif
+
+/// Products of a row of coefficients with rows of a basis at four texels.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void products_at(D d, const T* coefficients, const float* basis, size_t stride,
+                            size_t size, const size_t (&texel)[4], T (&products)[4]) {
+  const float* a = basis + texel[0] * stride;
+  const float* b = basis + texel[1] * stride;
+  const float* c = basis + texel[2] * stride;
+  const float* e = basis + texel[3] * stride;
+  using V = hn::VFromD<D>;
+  V sum[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  for (size_t k = 0; k < size; k += hn::Lanes(d)) {
+    const V weight = hn::Load(d, coefficients + k);
+    sum[0] = hn::MulAdd(weight, load_floats(d, a + k), sum[0]);
+    sum[1] = hn::MulAdd(weight, load_floats(d, b + k), sum[1]);
+    sum[2] = hn::MulAdd(weight, load_floats(d, c + k), sum[2]);
+    sum[3] = hn::MulAdd(weight, load_floats(d, e + k), sum[3]);
+  }
+  sum_lanes(d, sum, products);
+}
+
+/// The SSDF's value, and its derivatives by u and v in texels.
+template <class T>
+struct BlockSsdf {
+  BlockArray<T> value, by_u, by_v;
+};
+
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void read_ssdf(D d, const PreparedTransfer& transfer, const ShadingBlock<T>& block,
+                          size_t terms, const BlockFootprints<T>& footprints, BlockSsdf<T>& ssdf) {
+  const size_t stride = padded_terms(transfer.terms);
+  for (size_t i = 0; i < block.count; ++i) ssdf.value[i] = ssdf.by_u[i] = ssdf.by_v[i] = 0;
+  for (size_t r = 0; r < block.row_count; ++r) {
+    const VisibilityRow<T>& row = block.row[r];
+    const PreparedTransfer::Basis& basis = transfer.bases[row.basis];
+    const size_t i = row.point;
+    size_t texel[4];
+    footprint_texels(footprints.x[i], footprints.y[i], transfer.resolution, texel);
+    T v[4];
+    products_at(d, row.ssdf, basis.eigen.data(), stride, terms, texel, v);
+    for (int j = 0; j < 4; ++j) v[j] += static_cast<T>(basis.mean[texel[j]]);
+    const T fx = footprints.fraction_x[i], fy = footprints.fraction_y[i];
+    const T upper = v[0] + fx * (v[1] - v[0]), lower = v[2] + fx * (v[3] - v[2]);
+    ssdf.value[i] += row.weight * (upper + fy * (lower - upper));
+    ssdf.by_u[i] += row.weight * ((1 - fy) * (v[1] - v[0]) + fy * (v[3] - v[2]));
+    ssdf.by_v[i] += row.weight * (lower - upper);
+  }
+}
+
+/// octahedral_gradient, up to a positive factor. With p = |2 u - 1| and q = |2 v - 1| folded to the
+/// upper half, r = p + q is sqrt(1 - |z|), and the azimuth in a quadrant is q / r of it.
+template <class D, class V>
+HWY_INLINE Vector3<V> octahedral_gradient(D d, const Vector3<V>& direction, V by_u, V by_v) {
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), tiny = hn::Set(d, 1e-6f);
+  const V x = hn::Abs(direction.x), y = hn::Abs(direction.y), z = hn::Abs(direction.z);
+  const V radius = hn::Sqrt(hn::MulAdd(x, x, hn::Mul(y, y)));
+  const auto off_axis = hn::Gt(radius, tiny);
+  const V inverse = hn::Div(one, hn::Max(radius, tiny));
+  const V cosine = hn::IfThenElse(off_axis, hn::Mul(x, inverse), one);
+  const V sine = hn::IfThenElseZero(off_axis, hn::Mul(y, inverse));
+  const V large = hn::Max(x, y), small = hn::Min(x, y);
+  const V angle =
+      quarter_arctangent(d, hn::IfThenElseZero(off_axis, hn::Div(small, hn::Max(large, tiny))));
+  const V share = hn::IfThenElse(hn::Lt(x, y), hn::Sub(one, angle), angle);
+  const auto below = hn::Lt(direction.z, zero);
+  const V by_p0 = hn::CopySign(one, direction.x) * by_u,
+          by_q0 = hn::CopySign(one, direction.y) * by_v;
+  const V by_p = hn::IfThenElse(below, hn::Neg(by_q0), by_p0);
+  const V by_q = hn::IfThenElse(below, hn::Neg(by_p0), by_q0);
+  const V root = hn::Sqrt(hn::Add(one, z));
+  const V outward =
+      hn::Mul(hn::Mul(hn::Set(d, 0.5f), root), hn::MulAdd(share, hn::Sub(by_q, by_p), by_p));
+  const V around = hn::Div(hn::Mul(hn::Set(d, 0.636619772f), hn::Sub(by_q, by_p)), root);
+  const V along = hn::Mul(outward, z);
+  return {hn::CopySign(one, direction.x) * hn::MulSub(along, cosine, hn::Mul(around, sine)),
+          hn::CopySign(one, direction.y) * hn::MulAdd(along, sine, hn::Mul(around, cosine)),
+          hn::CopySign(one, direction.z) * hn::Neg(hn::Mul(outward, radius))};
+}
+
+/// A value of the SSDF, compressed at this amplitude (0: not), as the sine of the distance.
+template <class D, class V>
+HWY_INLINE V sine_of_ssdf(D d, V value, float amplitude_rad) {
+  if (!(amplitude_rad > 0)) return sine(d, held_distance(d, value));
+  const V one = hn::Set(d, 1.0f), size = hn::Min(hn::Abs(value), hn::Set(d, 0.9999999f));
+  const V distance = hn::Mul(hn::Set(d, amplitude_rad / 2),
+                             hn::Log(d, hn::Div(hn::Add(one, size), hn::Sub(one, size))));
+  return sine(d, held_distance(d, hn::CopySign(distance, value)));
+}
+
+/// A gradient as a unit vector; below this slope (a signed distance has 1, in radians) its
+/// direction is rounding noise, and it is 0.
+template <class D, class V>
+HWY_INLINE Vector3<V> unit_gradient(D d, const Vector3<V>& gradient, float least) {
+  const V length = hn::Sqrt(dot(gradient, gradient)), bound = hn::Set(d, least);
+  const V scale =
+      hn::IfThenElseZero(hn::Gt(length, bound), hn::Div(hn::Set(d, 1.0f), hn::Max(length, bound)));
+  return {hn::Mul(gradient.x, scale), hn::Mul(gradient.y, scale), hn::Mul(gradient.z, scale)};
+}
+
+/// The boundary, or, without a basis, the horizon, in a direction of each point.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void find_boundaries(D d, const PreparedTransfer& transfer, const ShadingBlock<T>& block,
+                                size_t terms, const BlockVector3<T>& directions,
+                                BlockBoundaries<T>& boundaries) {
+  BlockFootprints<T> footprints;
+  find_footprints(d, block.count, directions, transfer.resolution, footprints);
+  BlockSsdf<T> ssdf;
+  read_ssdf(d, transfer, block, terms, footprints, ssdf);
+  // Of a slope of 1e-4, below which its direction is rounding noise; half a texel's is what the
+  // gradient is in.
+  const float least = 2e-4f / static_cast<float>(transfer.resolution);
+  for (size_t i = 0; i < block.count; i += hn::Lanes(d)) {
+    hn::Store(sine_of_ssdf(d, hn::Load(d, ssdf.value.data() + i), transfer.amplitude_rad), d,
+              boundaries.sine.data() + i);
+    const auto gradient =
+        octahedral_gradient(d, load(d, directions, i), hn::Load(d, ssdf.by_u.data() + i),
+                            hn::Load(d, ssdf.by_v.data() + i));
+    store(d, unit_gradient(d, gradient, least), boundaries.gradient, i);
+  }
+}
+
+/// A boundary of one lobe a lane.
+template <class V>
+struct Boundary {
+  V sine;
+  Vector3<V> gradient;
+};
+
+/// The horizon of a normal.
+template <class D, class V>
+HWY_INLINE Boundary<V> horizon(D d, const Vector3<V>& normal, const Vector3<V>& direction) {
+  const V one = hn::Set(d, 1.0f);
+  const V sine = hn::Max(hn::Min(dot(normal, direction), one), hn::Neg(one));
+  const Vector3<V> gradient = {hn::NegMulAdd(sine, direction.x, normal.x),
+                               hn::NegMulAdd(sine, direction.y, normal.y),
+                               hn::NegMulAdd(sine, direction.z, normal.z)};
+  return {sine, unit_gradient(d, gradient, 1e-6f)};
+}
+
+/// visible_fraction of a lobe past a boundary.
+template <class D, class V>
+HWY_INLINE V visible_fraction(D d, VisibilityModel model, const AnisotropicGaussian<V>& lobe,
+                              const Boundary<V>& boundary) {
+  const V one = hn::Set(d, 1.0f);
+  if (model == VisibilityModel::directional) {
+    const V bandwidth =
+        directional_bandwidth(d, lobe.bandwidth_x, lobe.bandwidth_y, dot(boundary.gradient, lobe.x),
+                              dot(boundary.gradient, lobe.y));
+    const V root = hn::Max(hn::Sqrt(bandwidth), hn::Set(d, 1e-18f));
+    return visible_from_hidden(d, gaussian_tail(d, hn::Mul(root, hn::Abs(boundary.sine)), root),
+                               boundary.sine);
+  }
+  const V sharpness =
+      hn::Mul(hn::Set(d, 2.0f), hn::Mul(hn::Sqrt(lobe.bandwidth_x), hn::Sqrt(lobe.bandwidth_y)));
+  if (model == VisibilityModel::hemisphere) {
+    const V cosine =
+        hn::Sqrt(hn::Max(hn::NegMulAdd(boundary.sine, boundary.sine, one), hn::Zero(d)));
+    const V half_sine =
+        hn::Div(boundary.sine, hn::Sqrt(hn::Mul(hn::Set(d, 2.0f), hn::Add(one, cosine))));
+    return hemisphere_fraction(d, prepare_hemisphere(d, sharpness), half_sine);
+  }
+  using T = hn::TFromD<D>;
+  HWY_ALIGN T fractions[hn::MaxLanes(D())], sines[hn::MaxLanes(D())];
+  hn::Store(sharpness, d, fractions);
+  hn::Store(boundary.sine, d, sines);
+  for (size_t j = 0; j < hn::Lanes(d); ++j)
+    fractions[j] = visible_fraction_cap(fractions[j], std::asin(std::clamp(sines[j], T(-1), T(1))));
+  return hn::Load(d, fractions);
+}
+
+/// Of what of a lobe is above a normal's horizon, the part that is visible. Both vanish together
+/// where the lobe is far below the horizon; there what it lights does, too.
+template <class D, class V>
+HWY_INLINE V visible_share(D d, VisibilityModel model, const AnisotropicGaussian<V>& lobe,
+                           const Boundary<V>& boundary, const Vector3<V>& normal) {
+  const V seen = visible_fraction(d, model, lobe, boundary);
+  const V above = visible_fraction(d, model, lobe, horizon(d, normal, lobe.z));
+  const V one = hn::Set(d, 1.0f);
+  return hn::IfThenElse(hn::Lt(seen, above), hn::Div(seen, above), one);
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace burnish
+HWY_AFTER_NAMESPACE();
+
+#endif
