@@ -8,7 +8,7 @@
 
 #include "burnish/material/varying_material.h"
 #include "burnish/precompute/ray_scene.h"
-#include "burnish/shading/transfer.h"
+#include "burnish/shading/prepared_transfer.h"
 #include "burnish/sphere/frame.h"
 #include "harness/camera.h"
 
