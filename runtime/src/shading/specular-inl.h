@@ -101,11 +101,18 @@ HWY_INLINE void reflect_environment(D d, const Lighting& lighting, const Shading
                                     size_t count, const SliceBlock<T>& slice,
                                     BlockRgb<T>& reflected) {
   BlockRgb<T> seen;
-  if (lighting.environment)
-    eval_prefiltered(d, *lighting.environment, count, slice.lobes, slice.weight[1],
-                     options.environment_taps, seen);
-  else
+  if (lighting.environment) {
+    BlockArray<T> active;
+    for (size_t i = 0; i < count; i += hn::Lanes(d))
+      hn::Store(hn::Max(hn::Load(d, slice.weight[0].data() + i),
+                        hn::Max(hn::Load(d, slice.weight[1].data() + i),
+                                hn::Load(d, slice.weight[2].data() + i))),
+                d, active.data() + i);
+    eval_prefiltered(d, *lighting.environment, count, slice.lobes, active, options.environment_taps,
+                     seen);
+  } else {
     see_lobes(d, *lighting.lights, count, slice.lobes, seen);
+  }
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
     const auto integral =
         lighting.environment ? hn::Load(d, slice.integral.data() + i) : hn::Set(d, T(1));
