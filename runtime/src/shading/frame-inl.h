@@ -29,7 +29,7 @@ HWY_INLINE void add_coefficients(D, const PreparedTransfer& transfer, size_t fir
   const hn::ScalableTag<float> df;
   const hn::Rebind<hwy::float16_t, decltype(df)> dh;
   const size_t lanes = hn::Lanes(df);
-  const bool half = transfer.type == CoefficientType::float16;
+  const bool half = transfer.format == RowFormat::float16;
   HWY_ALIGN float buffer[hn::MaxLanes(decltype(df)())];
   HWY_ALIGN std::uint16_t rest[hn::MaxLanes(decltype(df)())] = {};
   for (size_t k = 0; k < count; k += lanes) {

@@ -58,11 +58,11 @@ void for_each_coefficient(const Transfer& transfer, const Write& write) {
 }  // namespace
 
 size_t PreparedTransfer::bytes_per_vertex() const {
-  const size_t coefficient = type == CoefficientType::float16 ? 2 : 4;
+  const size_t coefficient = format == RowFormat::float16 ? 2 : 4;
   return 3 * sizeof(Vector3f) + (bases.empty() ? 0 : 1) + coefficient * row_size();
 }
 
-PreparedTransfer prepare_transfer(const Transfer& transfer, CoefficientType type) {
+PreparedTransfer prepare_transfer(const Transfer& transfer, RowFormat format) {
   PreparedTransfer prepared;
   prepared.positions = transfer.positions;
   prepared.normals = transfer.normals;
@@ -77,9 +77,9 @@ PreparedTransfer prepare_transfer(const Transfer& transfer, CoefficientType type
   for (const SsdfBasis& basis : transfer.bases) prepared.bases.push_back(pad(basis));
   for (const LadderBasis& basis : transfer.ladder_bases) prepared.ladders.push_back(draw(basis));
   const size_t count = transfer.vertex_count() * prepared.row_size();
-  const bool half = type == CoefficientType::float16 && fits_float16(transfer.coefficients) &&
+  const bool half = format == RowFormat::float16 && fits_float16(transfer.coefficients) &&
                     fits_float16(transfer.ladder_coefficients);
-  prepared.type = half ? CoefficientType::float16 : CoefficientType::float32;
+  prepared.format = half ? RowFormat::float16 : RowFormat::float32;
   if (half) {
     prepared.rows16.resize(count);
     for_each_coefficient(transfer, [&](size_t i, float value) {

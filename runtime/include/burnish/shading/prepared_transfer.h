@@ -8,7 +8,7 @@
 
 namespace burnish {
 
-enum class CoefficientType {
+enum class RowFormat {
   float32,
   float16,  ///< half the memory; what it adds to the error of the compression does not show
 };
@@ -38,7 +38,7 @@ struct PreparedTransfer {
 
   /// A row for each vertex: its coefficients, and then those of the ladder. One of the two is used.
   /// @{
-  CoefficientType type = CoefficientType::float16;
+  RowFormat format = RowFormat::float16;
   std::vector<std::uint16_t> rows16;  ///< IEEE 754 binary16
   std::vector<float> rows32;
   /// @}
@@ -55,6 +55,6 @@ inline size_t padded_terms(int terms) { return (static_cast<size_t>(terms) + 15)
 
 /// Coefficients beyond the range of float16, 65504, make it float32.
 PreparedTransfer prepare_transfer(const Transfer& transfer,
-                                  CoefficientType type = CoefficientType::float16);
+                                  RowFormat format = RowFormat::float16);
 
 }  // namespace burnish
