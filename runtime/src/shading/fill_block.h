@@ -1,9 +1,19 @@
 #pragma once
 
+#include <cmath>
+
 #include "burnish/shading/shade.h"
 #include "shading/block.h"
 
 namespace burnish {
+
+/// From a position toward the eye; the normal where they are one.
+inline Vector3f toward(const Vector3f& eye, const Vector3f& position, const Vector3f& normal) {
+  const Vector3f difference = eye - position;
+  const float length = difference.stableNorm();
+  if (!(length > 0) || !std::isfinite(length)) return normal;
+  return lift_above_horizon(difference / length, normal);
+}
 
 /// Rows of coefficients that a block of points of this transfer has room for.
 inline size_t block_rows(const PreparedTransfer& transfer) {

@@ -46,14 +46,6 @@ Vector3f valid_normal(const Vector3f& normal) {
   return std::abs(square - 1) < 1e-5f ? normal : Vector3f(normal / std::sqrt(square));
 }
 
-/// From a position toward the eye; the normal where they are one.
-Vector3f toward(const Vector3f& eye, const Vector3f& position, const Vector3f& normal) {
-  const Vector3f difference = eye - position;
-  const float length = difference.stableNorm();
-  if (!(length > 0) || !std::isfinite(length)) return normal;
-  return lift_above_horizon(difference / length, normal);
-}
-
 /// Shades the vertices first + index[..] of one material.
 void shade_group(const PreparedTransfer& transfer, const Lighting& lighting,
                  const PreparedMaterial& material, const Vector3f& eye,

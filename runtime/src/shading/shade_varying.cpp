@@ -1,5 +1,7 @@
 #include "burnish/shading/shade_varying.h"
 
+#include "shading/fill_block.h"
+
 namespace burnish {
 
 void shade_vertices(const PreparedTransfer& transfer, const Lighting& lighting,
@@ -10,8 +12,7 @@ void shade_vertices(const PreparedTransfer& transfer, const Lighting& lighting,
     ShadingPoint point = vertex_shading_point(transfer, vertex);
     const SurfaceMaterial at = material_at(base, variation, vertex, point.frame);
     point.frame = at.frame;
-    const Vector3f outgoing =
-        lift_above_horizon((eye - point.position).normalized(), point.frame.z);
+    const Vector3f outgoing = toward(eye, point.position, point.frame.z);
     radiance[i] = shade_point(transfer, point, outgoing,
                               prepare_material(at.material, options.specular), lighting, options);
   }
