@@ -111,14 +111,57 @@ HWY_INLINE AnisotropicGaussian<V> lobe_times_cosine(D d, V bandwidth_x, V bandwi
   return result;
 }
 
+/// Normals in cells of the irradiance table: on an octahedron, unfolded to a square.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void find_cells(D d, size_t count, const BlockVector3<T>& normals,
+                           BlockFootprints<T>& cells) {
+  using V = hn::VFromD<D>;
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d),
+          half = hn::Set(d, 0.5f * IrradianceTable::kCells);
+  const V last = hn::Set(d, IrradianceTable::kCells - 1e-5f);
+  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const Vector3<V> n = load(d, normals, i);
+    const V length = hn::Add(hn::Add(hn::Abs(n.x), hn::Abs(n.y)), hn::Abs(n.z));
+    const V scale = hn::Div(one, hn::Max(length, hn::Set(d, 1e-30f)));
+    const V x = hn::Mul(hn::Abs(n.x), scale), y = hn::Mul(hn::Abs(n.y), scale);
+    const auto below = hn::Lt(n.z, zero);
+    const auto to_cells = [&](V upper, V lower, V sign) HWY_ATTR {
+      const V place = hn::CopySign(hn::IfThenElse(below, hn::Sub(one, lower), upper), sign);
+      return hn::Min(hn::Max(hn::MulAdd(half, place, half), zero), last);
+    };
+    store_footprints(d, to_cells(x, y, n.x), to_cells(y, x, n.y), i, cells);
+  }
+}
+
+/// The corners of the triangle that a place in a cell is in, and their weights. Cells are cut along
+/// the octahedron's edges.
+template <class T>
+HWY_INLINE void cell_triangle(int x, int y, T fraction_x, T fraction_y, size_t (&corner)[3],
+                              T (&weight)[3]) {
+  constexpr int kMiddle = IrradianceTable::kCells / 2;
+  const bool mirrored = (x < kMiddle) != (y < kMiddle);
+  const T fx = mirrored ? 1 - fraction_x : fraction_x, fy = fraction_y;
+  const int x0 = mirrored ? x + 1 : x, x1 = mirrored ? x : x + 1;
+  const bool outer = fx + fy > 1;
+  const auto at = [](int column, int row) {
+    return static_cast<size_t>(row * IrradianceTable::kCorners + column);
+  };
+  corner[0] = outer ? at(x1, y + 1) : at(x0, y);
+  corner[1] = at(x1, y);
+  corner[2] = at(x0, y + 1);
+  weight[0] = std::abs(1 - fx - fy);
+  weight[1] = outer ? 1 - fy : fx;
+  weight[2] = outer ? 1 - fx : fy;
+}
+
 /// All wide lobes at once, through the ladder.
 template <class D, class T = hn::TFromD<D>>
 HWY_NOINLINE void add_table_irradiance(D d, const PreparedTransfer& transfer,
                                        const PreparedLights& lights, const ShadingBlock<T>& block,
                                        BlockRgb<T>& irradiance) {
-  constexpr int kResolution = IrradianceTable::kResolution;
-  BlockFootprints<T> footprints;
-  find_footprints(d, block.count, block.normal, kResolution, footprints);
+  using V = hn::VFromD<D>;
+  BlockFootprints<T> cells;
+  find_cells(d, block.count, block.normal, cells);
   const size_t terms = padded_terms(transfer.ladder_terms);
   alignas(64) T sum[kBlock][8] = {};  // with shadow, then without
   for (size_t r = 0; r < block.row_count; ++r) {
@@ -126,17 +169,15 @@ HWY_NOINLINE void add_table_irradiance(D d, const PreparedTransfer& transfer,
     const size_t i = row.point;
     const IrradianceTable& table =
         lights.tables[static_cast<size_t>(transfer.ladder_of(row.basis))];
-    size_t texel[4];
-    footprint_texels(footprints.x[i], footprints.y[i], kResolution, texel);
-    const T fx = footprints.fraction_x[i], fy = footprints.fraction_y[i];
-    const T weight[4] = {row.weight * (1 - fx) * (1 - fy), row.weight * fx * (1 - fy),
-                         row.weight * (1 - fx) * fy, row.weight * fx * fy};
-    using V = hn::VFromD<D>;
+    size_t corner[3];
+    T weight[3];
+    cell_triangle(cells.x[i], cells.y[i], cells.fraction_x[i], cells.fraction_y[i], corner, weight);
     V total[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    for (int j = 0; j < 4; ++j) {
-      const float* entry = table.entries.data() + texel[j] * table.entry_size();
-      for (int c = 0; c < 8; ++c) sum[i][c] += weight[j] * static_cast<T>(entry[c]);
-      const V w = hn::Set(d, weight[j]);
+    for (int j = 0; j < 3; ++j) {
+      const float* entry = table.entries.data() + corner[j] * table.entry_size();
+      const T share = row.weight * weight[j];
+      for (int c = 0; c < 8; ++c) sum[i][c] += share * static_cast<T>(entry[c]);
+      const V w = hn::Set(d, share);
       const float* red = entry + IrradianceTable::kTerms;
       for (size_t k = 0; k < terms; k += hn::Lanes(d)) {
         const V coefficient = hn::Mul(w, hn::Load(d, row.ladder + k));

@@ -6,7 +6,6 @@
 
 #include "burnish/sphere/batch.h"
 #include "burnish/sphere/gauss_legendre.h"
-#include "burnish/sphere/octahedral_map.h"
 #include "visibility/harmonic_grid.h"
 
 // The irradiance of a light L through a visibility V is the product L V, convolved with the clamped
@@ -22,7 +21,7 @@ using Degrees = std::array<float, kMaxLadderBands>;
 
 constexpr std::array<int, 5> kCosineDegrees = {0, 1, 2, 4, 6};
 constexpr int kCosineHarmonics = 1 + 3 + 5 + 9 + 13;
-constexpr int kNormals = IrradianceTable::kResolution * IrradianceTable::kResolution;
+constexpr int kNormals = IrradianceTable::kCorners * IrradianceTable::kCorners;
 /// Narrower axes than the grid can tell are widened to this; the ladder cannot tell them, either.
 constexpr float kNarrowestOnGrid = 250;
 
@@ -73,16 +72,24 @@ Degrees open_factors(int bands) {
   });
 }
 
+/// The normal of a corner.
+Vector3f normal_of(int corner) {
+  constexpr int kCorners = IrradianceTable::kCorners;
+  constexpr float kWidth = 2.0f / IrradianceTable::kCells;
+  const float x = static_cast<float>(corner % kCorners) * kWidth - 1;
+  const float y = static_cast<float>(corner / kCorners) * kWidth - 1;
+  const float z = 1 - std::abs(x) - std::abs(y);
+  if (z >= 0) return Vector3f(x, y, z).normalized();
+  return Vector3f(std::copysign(1 - std::abs(y), x), std::copysign(1 - std::abs(x), y), z)
+      .normalized();
+}
+
 /// The harmonics of the directions of the table's normals: [kNormals][kGridHarmonics].
 const RowMajor& normal_harmonics() {
   static const RowMajor harmonics = [] {
     RowMajor result(kNormals, static_cast<Eigen::Index>(kGridHarmonics));
     for (int i = 0; i < kNormals; ++i)
-      eval_harmonics(kMaxLadderBands,
-                     octahedral_texel_direction<float>(i % IrradianceTable::kResolution,
-                                                       i / IrradianceTable::kResolution,
-                                                       IrradianceTable::kResolution),
-                     {result.row(i).data(), kGridHarmonics});
+      eval_harmonics(kMaxLadderBands, normal_of(i), {result.row(i).data(), kGridHarmonics});
     return result;
   }();
   return harmonics;

@@ -53,31 +53,36 @@ struct BlockBoundaries {
   BlockVector3<T> gradient;
 };
 
-/// Where a bilinear lookup of an octahedral map falls.
+/// Where a lookup between the points of a grid falls.
 template <class T>
 struct BlockFootprints {
-  alignas(64) std::int32_t x[kBlock], y[kBlock];  ///< of the first texel, -1..resolution - 1
+  alignas(64) std::int32_t x[kBlock], y[kBlock];  ///< of the first point
   BlockArray<T> fraction_x, fraction_y;
 };
 
+template <class D, class V, class T = hn::TFromD<D>>
+HWY_INLINE void store_footprints(D d, V x, V y, size_t i, BlockFootprints<T>& footprints) {
+  const auto floor_x = hn::Floor(x), floor_y = hn::Floor(y);
+  hn::Store(hn::Sub(x, floor_x), d, footprints.fraction_x.data() + i);
+  hn::Store(hn::Sub(y, floor_y), d, footprints.fraction_y.data() + i);
+  const hn::Rebind<std::int32_t, D> di;
+  if constexpr (std::is_same_v<T, float>) {
+    hn::Store(hn::ConvertTo(di, floor_x), di, footprints.x + i);
+    hn::Store(hn::ConvertTo(di, floor_y), di, footprints.y + i);
+  } else {
+    hn::StoreU(hn::DemoteTo(di, floor_x), di, footprints.x + i);
+    hn::StoreU(hn::DemoteTo(di, floor_y), di, footprints.y + i);
+  }
+}
+
+/// Of a bilinear lookup of an octahedral map: texels -1..resolution - 1.
 template <class D, class T = hn::TFromD<D>>
 HWY_INLINE void find_footprints(D d, size_t count, const BlockVector3<T>& directions,
                                 int resolution, BlockFootprints<T>& footprints) {
   const auto n = hn::Set(d, static_cast<T>(resolution)), half = hn::Set(d, T(0.5));
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
     const auto uv = direction_to_octahedral(d, load(d, directions, i));
-    const auto px = hn::MulSub(uv.x, n, half), py = hn::MulSub(uv.y, n, half);
-    const auto floor_x = hn::Floor(px), floor_y = hn::Floor(py);
-    hn::Store(hn::Sub(px, floor_x), d, footprints.fraction_x.data() + i);
-    hn::Store(hn::Sub(py, floor_y), d, footprints.fraction_y.data() + i);
-    const hn::Rebind<std::int32_t, D> di;
-    if constexpr (std::is_same_v<T, float>) {
-      hn::Store(hn::ConvertTo(di, floor_x), di, footprints.x + i);
-      hn::Store(hn::ConvertTo(di, floor_y), di, footprints.y + i);
-    } else {
-      hn::StoreU(hn::DemoteTo(di, floor_x), di, footprints.x + i);
-      hn::StoreU(hn::DemoteTo(di, floor_y), di, footprints.y + i);
-    }
+    store_footprints(d, hn::MulSub(uv.x, n, half), hn::MulSub(uv.y, n, half), i, footprints);
   }
 }
 

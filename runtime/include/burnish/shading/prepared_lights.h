@@ -25,13 +25,17 @@ struct PreparedLobe {
 /// and of a vertex's ladder coefficients, in which it is linear (docs/maths.md, "Irradiance
 /// table").
 struct IrradianceTable {
-  static constexpr int kResolution = 32;  ///< of the octahedral map of normals
+  /// Normals are the corners of the cells of an octahedron's faces, unfolded to a square: a normal
+  /// between them is in a triangle that does not reach over an edge. (Across the edges the
+  /// equal-area map of the SSDFs has a crease, of which an interpolation is off by 4 %.)
+  static constexpr int kCells = 32;  ///< along an edge of the square, even
+  static constexpr int kCorners = kCells + 1;
   /// At the start of a normal's entry, by channel: what comes through the ladder's mean, and what
   /// the ladder of a bare horizon lacks; the irradiance without shadow.
   enum { kMean = 0, kUnshadowed = 4, kTerms = 16 };
 
   int terms = 0;
-  std::vector<float> entries;  ///< [kResolution^2][kTerms + 3 padded_terms(terms)]
+  std::vector<float> entries;  ///< [kCorners^2][kTerms + 3 padded_terms(terms)]
   size_t entry_size() const { return kTerms + 3 * padded_terms(terms); }
 };
 
