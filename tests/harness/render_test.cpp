@@ -45,16 +45,17 @@ void add_basis(Transfer& transfer, int copies) {
 struct PlaneScene {
   ProceduralScene scene = make_scene("plane");
   Transfer transfer = transfer_of(scene.mesh);
-  Subject subject{&transfer, scene.materials, scene.material_id};
+  PreparedTransfer prepared;
+  Subject subject{&transfer, scene.materials, scene.material_id, nullptr, &prepared};
   ShadingOptions options;
   PreparedLights lights;
   Lighting lighting{&lights, nullptr};
   Image map = studio_environment(64);
   EnvironmentLight background{&map, world_from_environment(Vector3f::UnitY(), 70)};
   View view{scene.camera, 48, 32, 1};
+  LightRig rig;
 
   PlaneScene() {
-    LightRig rig;
     EnvironmentLobe lobe;
     lobe.lobe.frame = frame_from_axis<float>(Vector3f(0.6f, 0.8f, 0));
     lobe.lobe.bandwidth_x = 4;
@@ -62,7 +63,13 @@ struct PlaneScene {
     lobe.color = Rgb(1, 2, 3);
     rig.lobes.push_back(lobe);
     rig.spheres.push_back({Vector3f(0.5f, 0.6f, 0.1f), 0.1f, Rgb::Constant(8)});
-    lights = prepare_lights(rig, options);
+    prepare();
+  }
+
+  /// After a change of the transfer.
+  void prepare() {
+    prepared = prepare_transfer(transfer, CoefficientType::float32);
+    lights = prepare_lights(rig, prepared, options);
   }
 
   PrimaryHits trace() const { return trace_primary_rays(SceneRays(transfer), view); }
@@ -96,9 +103,11 @@ TEST(Render, HitsAndBackgroundAreThoseOfAPlane) {
 TEST(Render, PerPixelIsShadePointAtTheHit) {
   PlaneScene s;
   add_basis(s.transfer, 1);
+  s.prepare();
   const Picture picture =
       render(s.subject, s.trace(), s.lighting, s.background, ShadePer::pixel, s.options);
   const PrimaryRays rays = primary_rays(s.view.camera, s.view.width, s.view.height);
+  PreparedTransfer alone = s.prepared;  // of which the first vertex becomes the point's own
   for (int y = 0; y < s.view.height; y += 3)
     for (int x = 0; x < s.view.width; x += 3) {
       if (!picture.hit[static_cast<size_t>(y * s.view.width + x)]) continue;
@@ -106,12 +115,10 @@ TEST(Render, PerPixelIsShadePointAtTheHit) {
       ShadingPoint point;
       point.position = rays.origin - rays.origin.y() / direction.y() * direction;
       point.frame = frame_from_normal_tangent<float>(Vector3f::UnitY(), Vector3f::UnitX());
-      point.basis = &s.transfer.bases[0];
-      const float coefficient = 0.3f * point.position.x();  // linear, so interpolation is exact
-      point.coefficients = &coefficient;
-      const Rgb expected =
-          shade_point(point, -direction, prepare_material(s.scene.materials[0], s.options.specular),
-                      s.lighting, s.options);
+      alone.rows32[0] = 0.3f * point.position.x();  // linear, so interpolation is exact
+      const Rgb expected = shade_point(alone, point, -direction,
+                                       prepare_material(s.scene.materials[0], s.options.specular),
+                                       s.lighting, s.options);
       // Float positions and coefficients, through a lobe whose slope is of order 10.
       EXPECT_LT((picture.radiance.at(x, y) - expected).abs().maxCoeff(),
                 1e-4f * (1 + expected.maxCoeff()))
@@ -122,6 +129,7 @@ TEST(Render, PerPixelIsShadePointAtTheHit) {
 TEST(Render, PerVertexInterpolatesVertexRadiance) {
   PlaneScene s;
   add_basis(s.transfer, 1);
+  s.prepare();
   const PrimaryHits hits = s.trace();
   const Picture picture =
       render(s.subject, hits, s.lighting, s.background, ShadePer::vertex, s.options);
@@ -139,22 +147,24 @@ TEST(Render, PerVertexInterpolatesVertexRadiance) {
   }
   for (size_t vertex = 0; vertex < radiance.size(); vertex += 97) {
     const Rgb expected = shade_point(
-        vertex_shading_point(s.transfer, vertex),
+        s.prepared, vertex_shading_point(s.prepared, vertex),
         outgoing_toward(s.view.camera.origin, s.transfer.positions[vertex], Vector3f::UnitY()),
         prepare_material(s.scene.materials[0], s.options.specular), s.lighting, s.options);
     EXPECT_LT((radiance[vertex] - expected).abs().maxCoeff(), 1e-5f * (1 + expected.maxCoeff()));
   }
 }
 
-TEST(Render, TrianglesAcrossBasesBlendTheRadianceOfEach) {
+TEST(Render, TrianglesAcrossBasesBlendWhatEachSees) {
   // Two equal bases and equal coefficients: however vertices are assigned, the picture is the same.
   PlaneScene s;
   add_basis(s.transfer, 2);
   std::fill(s.transfer.coefficients.begin(), s.transfer.coefficients.end(), 0.2f);
+  s.prepare();
   const PrimaryHits hits = s.trace();
   const Picture one = render(s.subject, hits, s.lighting, s.background, ShadePer::pixel, s.options);
   for (size_t i = 0; i < s.transfer.basis_id.size(); ++i)
     s.transfer.basis_id[i] = static_cast<std::uint8_t>(i % 2);
+  s.prepare();
   const Picture two = render(s.subject, hits, s.lighting, s.background, ShadePer::pixel, s.options);
   for (size_t i = 0; i < one.radiance.pixels.size(); ++i)
     EXPECT_LT((one.radiance.pixels[i] - two.radiance.pixels[i]).abs().maxCoeff(),

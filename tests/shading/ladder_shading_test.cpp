@@ -7,6 +7,7 @@
 #include "burnish/shading/shade.h"
 #include "burnish/sphere/octahedral_map.h"
 #include "burnish/visibility/visibility_ladder.h"
+#include "shading/small_transfer.h"
 #include "support/quadrature.h"
 
 namespace burnish {
@@ -29,7 +30,6 @@ bool beside_a_wall(const Vector3d& d) {
 struct BakedPoint {
   SsdfBasis ssdf;
   LadderBasis ladder;
-  float coefficient = 0;
 
   explicit BakedPoint(const Visible& visible) {
     constexpr int kFine = 64, kCoarse = 32, kBands = 13;
@@ -62,15 +62,8 @@ struct BakedPoint {
       ssdf.mean.push_back(static_cast<float>((visible(d) ? 1 : -1) * std::acos(nearest)));
     }
   }
-  ShadingPoint point(float crossover) const {
-    ShadingPoint point;
-    point.position = Vector3f::Zero();
-    point.basis = &ssdf;
-    point.coefficients = &coefficient;
-    point.ladder = &ladder;
-    point.ladder_coefficients = &coefficient;
-    point.ladder_crossover = crossover;
-    return point;
+  PreparedTransfer transfer(float crossover) const {
+    return test::prepare_exactly(test::vertex_that_sees(ssdf, ladder, crossover));
   }
 };
 
@@ -84,13 +77,14 @@ LightRig one_lobe(const Frame<float>& frame, float bandwidth_x, float bandwidth_
   return rig;
 }
 
-float diffuse(const ShadingPoint& point, const LightRig& rig, const ShadingOptions& options) {
+float diffuse(const PreparedTransfer& transfer, const LightRig& rig, const ShadingOptions& options,
+              size_t vertex = 0) {
   Material white;
   white.diffuse = Rgb::Constant(kPi<float>);
   white.specular = Rgb::Zero();
-  const PreparedLights lights = prepare_lights(rig, options);
-  return shade_point(point, Vector3f::UnitZ(), prepare_material(white, {}), {&lights, nullptr},
-                     options)
+  const PreparedLights lights = prepare_lights(rig, transfer, options);
+  return shade_point(transfer, vertex_shading_point(transfer, vertex), Vector3f::UnitZ(),
+                     prepare_material(white, {}), {&lights, nullptr}, options)
       .x();
 }
 
@@ -111,25 +105,26 @@ constexpr float kAlways = 1e6f;  ///< a crossover that no lobe here is near
 
 TEST(LadderShading, UnoccludedIsAsWithoutABake) {
   const BakedPoint baked(above_horizon);
-  const ShadingPoint point = baked.point(kAlways);
-  ShadingPoint open = point;
-  open.basis = nullptr;
+  const PreparedTransfer transfer = baked.transfer(kAlways);
   std::mt19937 random(kSeed);
   for (const float bandwidth : {0.1f, 1.0f, 4.0f}) {
+    const float fit =
+        2e-3f * prepare_lights(one_lobe({}, bandwidth, bandwidth), transfer, {}).lobes[0].integral;
     for (int i = 0; i < 50; ++i) {
       const LightRig rig = one_lobe(random_frame(random), bandwidth, bandwidth);
-      const float bare = diffuse(open, rig, {});
-      // The horizon's fraction comes from fits with an error of 4e-4, of fractions above .1 here,
-      // and from 13 bands of a map whose texels the horizon crosses.
-      EXPECT_NEAR(diffuse(point, rig, {}), bare, 6e-3 * bare) << bandwidth << " seed " << kSeed;
-      EXPECT_LE(diffuse(point, rig, {}), bare * 1.000001f);
+      const float bare = diffuse(test::kOpen, rig, {});
+      // The table's irradiance is that of 31 harmonics of the cosine, with 13 bands of a map whose
+      // texels the horizon crosses.
+      EXPECT_NEAR(diffuse(transfer, rig, {}), bare, 6e-3 * bare) << bandwidth << " seed " << kSeed;
+      // Without a bake, it is a fit, good to .002 of the lobe's integral.
+      EXPECT_LE(diffuse(transfer, rig, {}), bare + fit);
     }
   }
 }
 
 TEST(LadderShading, BesideAWallErrsLessThanTheSsdf) {
   const BakedPoint baked(beside_a_wall);
-  const ShadingPoint point = baked.point(kAlways);
+  const PreparedTransfer transfer = baked.transfer(kAlways);
   ShadingOptions without;
   without.ladder = false;
   struct Case {
@@ -150,8 +145,8 @@ TEST(LadderShading, BesideAWallErrsLessThanTheSsdf) {
     for (int i = 0; i < 30; ++i) {
       const LightRig rig = one_lobe(random_frame(random), c.bandwidth_x, c.bandwidth_y);
       const double exact = truth(rig, beside_a_wall);
-      error += std::pow(diffuse(point, rig, {}) - exact, 2);
-      without_error += std::pow(diffuse(point, rig, without) - exact, 2);
+      error += std::pow(diffuse(transfer, rig, {}) - exact, 2);
+      without_error += std::pow(diffuse(transfer, rig, without) - exact, 2);
       norm += exact * exact;
     }
     EXPECT_LT(std::sqrt(error / norm), c.bound) << c.bandwidth_x << " " << c.bandwidth_y;
@@ -164,18 +159,16 @@ TEST(LadderShading, IsOffWhereAskedForOrWithoutOne) {
   const BakedPoint baked(beside_a_wall);
   std::mt19937 random(kSeed);
   const LightRig rig = one_lobe(random_frame(random), 1, 1);
-  ShadingPoint none = baked.point(kAlways);
-  none.ladder = nullptr;
-  none.ladder_coefficients = nullptr;
+  const PreparedTransfer none = test::prepare_exactly(test::vertex_that_sees(baked.ssdf));
   const float by_ssdf = diffuse(none, rig, {});
-  EXPECT_NE(diffuse(baked.point(kAlways), rig, {}), by_ssdf);
-  EXPECT_EQ(diffuse(baked.point(0), rig, {}), by_ssdf);
+  EXPECT_NE(diffuse(baked.transfer(kAlways), rig, {}), by_ssdf);
+  EXPECT_EQ(diffuse(baked.transfer(0), rig, {}), by_ssdf);
   ShadingOptions options;
   options.ladder = false;
-  EXPECT_EQ(diffuse(baked.point(kAlways), rig, options), by_ssdf);
+  EXPECT_EQ(diffuse(baked.transfer(kAlways), rig, options), by_ssdf);
   options.ladder = true;
   options.cosine = CosineModel::constant;
-  EXPECT_EQ(diffuse(baked.point(kAlways), rig, options), diffuse(none, rig, options));
+  EXPECT_EQ(diffuse(baked.transfer(kAlways), rig, options), diffuse(none, rig, options));
 }
 
 TEST(LadderShading, FadesOutAcrossTheCrossover) {
@@ -185,16 +178,16 @@ TEST(LadderShading, FadesOutAcrossTheCrossover) {
   const Frame<float> frame =
       frame_from_axis<float>(Vector3f(0.5f, 0.1f, 0.6f).normalized());  // at the wall's top
   const LightRig rig = one_lobe(frame, 10, 10);
-  const float by_ssdf = diffuse(baked.point(kAlways), rig, without);
-  const float by_ladder = diffuse(baked.point(kAlways), rig, {});
+  const float by_ssdf = diffuse(baked.transfer(kAlways), rig, without);
+  const float by_ladder = diffuse(baked.transfer(kAlways), rig, {});
   // Lobe times cosine has a bandwidth of about 11. The step is over at half and at twice that.
-  EXPECT_EQ(diffuse(baked.point(5), rig, {}), by_ssdf);
-  EXPECT_EQ(diffuse(baked.point(24), rig, {}), by_ladder);
+  EXPECT_EQ(diffuse(baked.transfer(5), rig, {}), by_ssdf);
+  EXPECT_EQ(diffuse(baked.transfer(24), rig, {}), by_ladder);
   ASSERT_GT(std::abs(by_ssdf - by_ladder), 1e-3f);
   float last = 0;
   for (float crossover = 5; crossover < 24; crossover *= 1.05f) {
     const float share =
-        (diffuse(baked.point(crossover), rig, {}) - by_ssdf) / (by_ladder - by_ssdf);
+        (diffuse(baked.transfer(crossover), rig, {}) - by_ssdf) / (by_ladder - by_ssdf);
     EXPECT_GE(share, last - 1e-3f) << crossover;  // rounding of the difference
     EXPECT_LE(share, last + 0.1f) << crossover;   // no step: its slope is 1.5 / 2 an octave
     last = share;
@@ -202,22 +195,41 @@ TEST(LadderShading, FadesOutAcrossTheCrossover) {
 }
 
 TEST(LadderShading, VertexReadsItsOwnBasisAndCoefficients) {
-  Transfer transfer;
-  transfer.positions.assign(2, Vector3f::Zero());
-  transfer.normals.assign(2, Vector3f::UnitZ());
-  transfer.tangents.assign(2, Vector3f::UnitX());
-  transfer.bases.resize(2, {16, 1, 0, {}, {}});
-  transfer.basis_id = {1, 0};
-  transfer.coefficients = {0, 0};
-  EXPECT_EQ(vertex_shading_point(transfer, 0).ladder, nullptr);
-  transfer.ladder_bases.resize(2, {1, 3, {}, {}});
-  transfer.ladder_coefficients.resize(6);
-  transfer.ladder_crossover = 20;
-  const ShadingPoint point = vertex_shading_point(transfer, 1);
-  EXPECT_EQ(point.ladder, &transfer.ladder_bases[0]);
-  EXPECT_EQ(point.ladder_coefficients, &transfer.ladder_coefficients[3]);
-  EXPECT_EQ(point.ladder_crossover, 20);
-  EXPECT_EQ(vertex_shading_point(transfer, 0).ladder, &transfer.ladder_bases[1]);
+  const BakedPoint walled(beside_a_wall), open(above_horizon);
+  std::mt19937 random(kSeed);
+  // Two bases that differ, of which a vertex sees the mean and half of an eigenvector.
+  const auto vary = [&](std::vector<float>& eigen) {
+    for (float& value : eigen) value = std::normal_distribution<float>(0, 0.1f)(random);
+  };
+  BakedPoint baked[2] = {walled, open};
+  for (BakedPoint& basis : baked) {
+    vary(basis.ssdf.eigen);
+    vary(basis.ladder.eigen);
+  }
+  Transfer both = test::vertices_at_origin(2);
+  both.basis_id = {1, 0};
+  both.coefficients = {0.5f, -0.5f};
+  both.ladder_coefficients = {-0.5f, 0.25f};
+  both.ladder_crossover = 20;
+  for (const BakedPoint& basis : baked) {
+    both.bases.push_back(basis.ssdf);
+    both.ladder_bases.push_back(basis.ladder);
+  }
+  const PreparedTransfer prepared = test::prepare_exactly(both);
+  // One wide lobe, which the ladder sees, and one narrow one, which the SSDF sees.
+  for (const float bandwidth : {2.0f, 200.0f}) {
+    const LightRig rig = one_lobe(random_frame(random), bandwidth, bandwidth);
+    float alone[2];
+    for (size_t vertex = 0; vertex < 2; ++vertex) {
+      const BakedPoint& own = baked[both.basis_id[vertex]];
+      Transfer single = test::vertex_that_sees(own.ssdf, own.ladder, 20);
+      single.coefficients = {both.coefficients[vertex]};
+      single.ladder_coefficients = {both.ladder_coefficients[vertex]};
+      alone[vertex] = diffuse(test::prepare_exactly(single), rig, {});
+      EXPECT_EQ(diffuse(prepared, rig, {}, vertex), alone[vertex]) << bandwidth;
+    }
+    EXPECT_GT(std::abs(alone[0] - alone[1]), 0.01f * std::max(alone[0], alone[1])) << bandwidth;
+  }
 }
 
 }  // namespace

@@ -5,11 +5,14 @@
 
 #include "burnish/shading/shade.h"
 #include "burnish/sphere/octahedral_map.h"
+#include "shading/small_transfer.h"
 #include "support/quadrature.h"
 #include "support/rectangle_nodes.h"
 
 namespace burnish {
 namespace {
+
+using test::kOpen;
 
 constexpr unsigned kSeed = 41;
 
@@ -30,10 +33,10 @@ ShadingPoint at_origin() {
   return point;
 }
 
-Rgb shade(const ShadingPoint& point, const LightRig& rig, const Material& material,
-          const Vector3f& outgoing, const ShadingOptions& options = {}) {
-  const PreparedLights lights = prepare_lights(rig, options);
-  return shade_point(point, outgoing, prepare_material(material, options.specular),
+Rgb shade(const PreparedTransfer& transfer, const ShadingPoint& point, const LightRig& rig,
+          const Material& material, const Vector3f& outgoing, const ShadingOptions& options = {}) {
+  const PreparedLights lights = prepare_lights(rig, transfer, options);
+  return shade_point(transfer, point, outgoing, prepare_material(material, options.specular),
                      {&lights, nullptr}, options);
 }
 
@@ -97,7 +100,7 @@ TEST(LocalLightHighlight, OfADiscKeepsItsStatedError) {
       const auto radius = float(c.radius);
       rig.directionals.push_back({axis, radius, irradiance_of_disc(Rgb::Ones(), radius)});
       const Material m = metal(c.alpha, c.alpha);
-      const double found = shade(at_origin(), rig, m, Vector3f::UnitZ(), kAtPeak).x();
+      const double found = shade(kOpen, at_origin(), rig, m, Vector3f::UnitZ(), kAtPeak).x();
       const double truth =
           specular_truth(m, Vector3f::UnitZ(), cap_nodes(axis.cast<double>(), c.radius, 60));
       error += (found - truth) * (found - truth);
@@ -125,7 +128,7 @@ TEST(LocalLightHighlight, OfARectangleKeepsItsStatedError) {
                                 .radiance = Rgb::Ones(),
                                 .two_sided = true});
       const Material m = metal(c.alpha_x, c.alpha_y);
-      const double found = shade(at_origin(), rig, m, Vector3f::UnitZ(), kAtPeak).x();
+      const double found = shade(kOpen, at_origin(), rig, m, Vector3f::UnitZ(), kAtPeak).x();
       const double truth = specular_truth(
           m, Vector3f::UnitZ(), test::rectangle_nodes(rig.rectangles[0], Vector3d::Zero(), 80));
       error += (found - truth) * (found - truth);
@@ -152,8 +155,8 @@ TEST(LocalLightHighlight, OfManyTeethKeepsItsStatedErrorAtEveryView) {
           {axis, float(radius), irradiance_of_disc(Rgb::Ones(), float(radius))});
       const ShadingOptions nine = {.specular = {SpecularForm::moments, 9, 3}};
       const double truth = specular_truth(m, outgoing, cap_nodes(axis.cast<double>(), radius, 60));
-      error += std::pow(shade(at_origin(), rig, m, outgoing, nine).x() - truth, 2);
-      peak_error += std::pow(shade(at_origin(), rig, m, outgoing, kAtPeak).x() - truth, 2);
+      error += std::pow(shade(kOpen, at_origin(), rig, m, outgoing, nine).x() - truth, 2);
+      peak_error += std::pow(shade(kOpen, at_origin(), rig, m, outgoing, kAtPeak).x() - truth, 2);
       norm += truth * truth;
     }
     EXPECT_LT(std::sqrt(error / norm), c.error) << c.view_deg;
@@ -169,29 +172,27 @@ TEST(LocalLightHighlight, InsideASphereIsThatOfAConstantEnvironment) {
   LightRig rig;
   rig.spheres.push_back({Vector3f(0.1f, 0.2f, -0.3f), 1, Rgb::Constant(2)});
   for (const Vector3f& outgoing : {Vector3f(0, 0, 1), Vector3f(0.6f, 0, 0.8f)}) {
-    const Rgb truth =
-        shade_point(at_origin(), outgoing, prepare_material(m, {}), {&none, &environment}, {});
+    const Rgb truth = shade_point(kOpen, at_origin(), outgoing, prepare_material(m, {}),
+                                  {&none, &environment}, {});
     // The map gives its constant to 1e-5, the sphere its radiance.
-    EXPECT_LT((shade(at_origin(), rig, m, outgoing) / truth - 1).abs().maxCoeff(), 2e-5);
+    EXPECT_LT((shade(kOpen, at_origin(), rig, m, outgoing) / truth - 1).abs().maxCoeff(), 2e-5);
   }
 }
 
-/// A bake of one vertex that sees what is above the horizon on the side of `wall`, as a map of
+/// A transfer of one vertex that sees what is above the horizon on the side of `wall`, as a map of
 /// distances to the nearer of the two great circles.
 struct WalledPoint {
   Vector3f wall = Vector3f(1, 0, 0.3f).normalized();
-  SsdfBasis basis{64, 1, 0, {}, std::vector<float>(64 * 64, 0.0f)};
-  float coefficient = 0;
-  ShadingPoint point = at_origin();
+  PreparedTransfer transfer;
 
   WalledPoint() {
+    SsdfBasis basis{64, 1, 0, {}, std::vector<float>(64 * 64, 0.0f)};
     for (int i = 0; i < 64 * 64; ++i) {
       const Vector3f d = octahedral_texel_direction<float>(i % 64, i / 64, 64);
       basis.mean.push_back(
           std::min(std::asin(d.z()), std::asin(std::clamp(wall.dot(d), -1.0f, 1.0f))));
     }
-    point.basis = &basis;
-    point.coefficients = &coefficient;
+    transfer = test::prepare_exactly(test::vertex_that_sees(basis));
   }
   bool sees(const Vector3d& d) const { return d.z() > 0 && wall.cast<double>().dot(d) > 0; }
 };
@@ -217,7 +218,7 @@ TEST(LocalLightShadow, BesideAWallIsNearTheTruth) {
         for (const auto& [d, weight] : nodes[kind])
           if (walled.sees(d)) truth += weight * d.z();
         const double found =
-            shade(walled.point, rigs[kind], white_diffuse(), Vector3f::UnitZ()).x();
+            shade(walled.transfer, at_origin(), rigs[kind], white_diffuse(), Vector3f::UnitZ()).x();
         error[kind] += (found - truth) * (found - truth);
         norm[kind] += truth * truth;
       }
@@ -269,11 +270,12 @@ TEST(LightRigOperations, RotateTurnsTheDistantLightsAgainstTheScene) {
     ShadingPoint point = at_origin(), turned = point;
     turned.frame = {turn * point.frame.x, turn * point.frame.y, turn * point.frame.z};
     const Vector3f outgoing = Vector3f(0.2f, 0.3f, 1).normalized();
-    const Rgb before = shade(point, rig, glossy(), outgoing);
+    const Rgb before = shade(kOpen, point, rig, glossy(), outgoing);
     rotate(rig, turn);
     // The rounding of a rotation, magnified by exponents of up to 50.
-    EXPECT_LT((shade(turned, rig, glossy(), turn * outgoing) / before - 1).abs().maxCoeff(), 1e-4);
-    EXPECT_GT((shade(point, rig, glossy(), outgoing) / before - 1).abs().maxCoeff(), 1e-3);
+    EXPECT_LT((shade(kOpen, turned, rig, glossy(), turn * outgoing) / before - 1).abs().maxCoeff(),
+              1e-4);
+    EXPECT_GT((shade(kOpen, point, rig, glossy(), outgoing) / before - 1).abs().maxCoeff(), 1e-3);
   }
 }
 
@@ -294,7 +296,9 @@ TEST(LightRigOperations, AddAndScaleAreLinear) {
   std::mt19937 random(kSeed + 1);
   SCOPED_TRACE(kSeed + 1);
   const Vector3f outgoing = Vector3f(0.2f, 0.3f, 1).normalized();
-  const auto of = [&](const LightRig& rig) { return shade(at_origin(), rig, glossy(), outgoing); };
+  const auto of = [&](const LightRig& rig) {
+    return shade(kOpen, at_origin(), rig, glossy(), outgoing);
+  };
   for (int i = 0; i < 10; ++i) {
     const LightRig a = some_lights(random), b = some_lights(random);
     LightRig blend = a, share = b;
@@ -319,10 +323,10 @@ TEST(LocalLights, ThatDoNotReachAPointAddNothing) {
   rig.rectangles.push_back({Vector3f(0, 0, 1), {1, 0, 0}, {0, 1, 0}, Rgb::Ones(), false});
   const Vector3f outgoing = Vector3f(0.2f, 0.3f, 1).normalized();
   for (const CosineModel cosine : {CosineModel::constant, CosineModel::horizon_normalised})
-    EXPECT_EQ(shade(at_origin(), rig, glossy(), outgoing, {.cosine = cosine}).maxCoeff(), 0);
+    EXPECT_EQ(shade(kOpen, at_origin(), rig, glossy(), outgoing, {.cosine = cosine}).maxCoeff(), 0);
   // Turned to the point, the last one does.
   rig.rectangles[1].two_sided = true;
-  EXPECT_GT(shade(at_origin(), rig, glossy(), outgoing).minCoeff(), 0.1);
+  EXPECT_GT(shade(kOpen, at_origin(), rig, glossy(), outgoing).minCoeff(), 0.1);
 }
 
 TEST(LocalLights, AreFiniteWhereverTheyAre) {
@@ -345,8 +349,8 @@ TEST(LocalLights, AreFiniteWhereverTheyAre) {
       rig.rectangles.push_back(
           {Vector3f::Zero(), extent * frame.x, extent * frame.y, Rgb::Ones(), true});
       for (const Material& material : {glossy(), sharp})
-        for (const ShadingPoint& point : {at_origin(), walled.point}) {
-          const Rgb radiance = shade(point, rig, material, Vector3f::UnitZ());
+        for (const PreparedTransfer* transfer : {&kOpen, &walled.transfer}) {
+          const Rgb radiance = shade(*transfer, at_origin(), rig, material, Vector3f::UnitZ());
           EXPECT_TRUE(radiance.allFinite() && (radiance >= 0).all()) << scale << " " << size;
         }
     }
@@ -356,7 +360,7 @@ TEST(LocalLights, AreFiniteWhereverTheyAre) {
 TEST(PrepareLights, RefusesLocalLightsByTheirNumberAndDropsBlackOnes) {
   const auto error_of = [](const LightRig& rig) -> std::string {
     try {
-      prepare_lights(rig, {});
+      prepare_lights(rig, kOpen, {});
     } catch (const std::invalid_argument& error) {
       return error.what();
     }
@@ -378,7 +382,7 @@ TEST(PrepareLights, RefusesLocalLightsByTheirNumberAndDropsBlackOnes) {
   rig = {};
   rig.spheres.resize(3);
   rig.spheres[1].radiance.y() = 1;
-  EXPECT_EQ(prepare_lights(rig, {}).spheres.size(), 1u);
+  EXPECT_EQ(prepare_lights(rig, kOpen, {}).spheres.size(), 1u);
 }
 
 }  // namespace

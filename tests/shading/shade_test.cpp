@@ -6,10 +6,13 @@
 #include <gtest/gtest.h>
 
 #include "burnish/sphere/octahedral_map.h"
+#include "shading/small_transfer.h"
 #include "support/quadrature.h"
 
 namespace burnish {
 namespace {
+
+using test::kOpen;
 
 constexpr unsigned kSeed = 31;
 
@@ -82,10 +85,10 @@ TEST(ShadeDiffuse, UnoccludedNarrowLightIsTheClosedForm) {
   for (const double theta : {0.0, 0.5, 1.2}) {
     const LightRig rig =
         one_lobe(Vector3f(std::sin(theta), 0, std::cos(theta)), bandwidth, bandwidth, Rgb(1, 2, 3));
-    const PreparedLights lights = prepare_lights(rig, {});
+    const PreparedLights lights = prepare_lights(rig, kOpen, {});
     const Rgb radiance =
-        shade_point(upward_point(), Vector3f::UnitZ(), prepare_material(diffuse_material(), {}),
-                    {&lights, nullptr}, {});
+        shade_point(kOpen, upward_point(), Vector3f::UnitZ(),
+                    prepare_material(diffuse_material(), {}), {&lights, nullptr}, {});
     const double expected = 0.5 / kPi<double> * 2 * kPi<double> / bandwidth * std::cos(theta);
     // A light of deviation .01 is a delta to 1e-4.
     EXPECT_NEAR(radiance.y() / expected, 1, 1e-3) << theta;
@@ -97,10 +100,10 @@ TEST(ShadeDiffuse, UnoccludedWideLightKeepsTheStatedError) {
     for (const double theta : {0.0, 0.8, 1.5, 2.0}) {
       const LightRig rig =
           one_lobe(Vector3f(std::sin(theta), 0, std::cos(theta)), bx, by, Rgb::Ones());
-      const PreparedLights lights = prepare_lights(rig, {});
+      const PreparedLights lights = prepare_lights(rig, kOpen, {});
       Material white;
       white.diffuse = Rgb::Constant(kPi<float>);  // radiance is then irradiance
-      const Rgb radiance = shade_point(upward_point(), Vector3f::UnitZ(),
+      const Rgb radiance = shade_point(kOpen, upward_point(), Vector3f::UnitZ(),
                                        prepare_material(white, {}), {&lights, nullptr}, {});
       const double truth = diffuse_truth(rig, [](const Vector3d&) { return true; });
       // mean_clamped_cosine: at most .002 of the lobe's integral.
@@ -119,10 +122,7 @@ double wall_error(const ShadingOptions& options, float bandwidth_x, float bandwi
   };
   const SsdfBasis basis =
       basis_of([&](const Vector3f& v) { return v.z() > 0 && wall.dot(v) > 0; }, 32);
-  const float coefficient = 0;
-  ShadingPoint point = upward_point();
-  point.basis = &basis;
-  point.coefficients = &coefficient;
+  const PreparedTransfer walled = test::prepare_exactly(test::vertex_that_sees(basis));
   Material white;
   white.diffuse = Rgb::Constant(kPi<float>);
   std::mt19937 random(kSeed);
@@ -130,9 +130,9 @@ double wall_error(const ShadingOptions& options, float bandwidth_x, float bandwi
   for (int i = 0; i < 40; ++i) {
     const LightRig rig = one_lobe(test::random_direction(random).cast<float>(), bandwidth_x,
                                   bandwidth_y, Rgb::Ones());
-    const PreparedLights lights = prepare_lights(rig, options);
-    const double estimate = shade_point(point, Vector3f::UnitZ(), prepare_material(white, {}),
-                                        {&lights, nullptr}, options)
+    const PreparedLights lights = prepare_lights(rig, walled, options);
+    const double estimate = shade_point(walled, upward_point(), Vector3f::UnitZ(),
+                                        prepare_material(white, {}), {&lights, nullptr}, options)
                                 .x();
     const double truth = diffuse_truth(rig, visible);
     error += (estimate - truth) * (estimate - truth);
@@ -160,17 +160,15 @@ TEST(ShadeDiffuse, BesideAWallIsNearTheTruthAndBeatsThePaper) {
 
 TEST(ShadeDiffuse, FullyBlockedIsBlack) {
   SsdfBasis basis{16, 1, 0, std::vector<float>(256, -kPi<float>), std::vector<float>(256, 0)};
-  const float coefficient = 0;
-  ShadingPoint point = upward_point();
-  point.basis = &basis;
-  point.coefficients = &coefficient;
-  const PreparedLights lights = prepare_lights(one_lobe(Vector3f::UnitZ(), 20, 5, Rgb::Ones()), {});
+  const PreparedTransfer blocked = test::prepare_exactly(test::vertex_that_sees(basis));
+  const PreparedLights lights =
+      prepare_lights(one_lobe(Vector3f::UnitZ(), 20, 5, Rgb::Ones()), blocked, {});
   Material both = metal(SpecularModel::ward, 0.2f, 0.2f);
   both.diffuse = Rgb::Ones();
-  EXPECT_LT(
-      shade_point(point, Vector3f::UnitZ(), prepare_material(both, {}), {&lights, nullptr}, {})
-          .maxCoeff(),
-      1e-6);
+  EXPECT_LT(shade_point(blocked, upward_point(), Vector3f::UnitZ(), prepare_material(both, {}),
+                        {&lights, nullptr}, {})
+                .maxCoeff(),
+            1e-6);
 }
 
 TEST(ShadeSphereLight, IrradianceIsTheClosedForm) {
@@ -180,12 +178,12 @@ TEST(ShadeSphereLight, IrradianceIsTheClosedForm) {
   for (const float radius : {1e-3f, 0.5f, 1.5f}) {
     LightRig rig;
     rig.spheres.push_back({Vector3f(0.8f, 0, 2), radius, Rgb::Ones()});
-    const PreparedLights lights = prepare_lights(rig, {});
+    const PreparedLights lights = prepare_lights(rig, kOpen, {});
     const float distance = rig.spheres[0].center.norm();
     const double expected = kPi<double> * radius * radius / distance / distance *
                             (rig.spheres[0].center.z() / distance);
-    const Rgb radiance = shade_point(upward_point(), Vector3f::UnitZ(), prepare_material(white, {}),
-                                     {&lights, nullptr}, {});
+    const Rgb radiance = shade_point(kOpen, upward_point(), Vector3f::UnitZ(),
+                                     prepare_material(white, {}), {&lights, nullptr}, {});
     // Where the sphere nears the horizon (radius 1.5 reaches 7 degrees above it), the normal tail
     // adds up to 1 %.
     EXPECT_NEAR(radiance.x() / expected, 1, 0.01) << radius;
@@ -195,11 +193,11 @@ TEST(ShadeSphereLight, IrradianceIsTheClosedForm) {
 TEST(ShadeSphereLight, FromInsideIsAHemisphereOfLight) {
   LightRig rig;
   rig.spheres.push_back({Vector3f(0, 0, 0.2f), 1, Rgb::Ones()});
-  const PreparedLights lights = prepare_lights(rig, {});
+  const PreparedLights lights = prepare_lights(rig, kOpen, {});
   Material white;
   white.diffuse = Rgb::Ones();
-  const Rgb radiance = shade_point(upward_point(), Vector3f::UnitZ(), prepare_material(white, {}),
-                                   {&lights, nullptr}, {});
+  const Rgb radiance = shade_point(kOpen, upward_point(), Vector3f::UnitZ(),
+                                   prepare_material(white, {}), {&lights, nullptr}, {});
   // The exact value is 1; mean_clamped_cosine is good to .002.
   EXPECT_NEAR(radiance.x(), 1, 0.002);
 }
@@ -213,7 +211,7 @@ TEST(ShadeSpecular, ConstantEnvironmentGivesTheAlbedo) {
       const double t = view * kPi<double> / 180;
       const Vector3f o(std::sin(t), 0, std::cos(t));
       const Rgb radiance =
-          shade_point(upward_point(), o, prepare_material(m, {}), {&none, &environment}, {});
+          shade_point(kOpen, upward_point(), o, prepare_material(m, {}), {&none, &environment}, {});
       std::mt19937 random(kSeed);
       std::uniform_real_distribution<float> unit(0, 1);
       double sum = 0;
@@ -238,18 +236,15 @@ TEST(ShadeSpecular, WallHidesHalfOfALobeAtItsBoundary) {
   const Vector3f wall = Vector3f::UnitX();  // everything with x < 0 is hidden
   const SsdfBasis basis =
       basis_of([&](const Vector3f& v) { return v.z() > 0 && v.dot(wall) > 0; }, 64);
-  const float coefficient = 0;
-  ShadingPoint open = upward_point(), walled = upward_point();
-  walled.basis = &basis;
-  walled.coefficients = &coefficient;
+  const PreparedTransfer walled = test::prepare_exactly(test::vertex_that_sees(basis));
   const PrefilteredEnvironment environment = prefilter_environment(Image(8, 4, Rgb::Ones()));
   const PreparedLights none;
   const Material m = metal(SpecularModel::ward, 0.1f, 0.03f);
   // Mirrored at x = 0: the wall's edge runs through the lobe's axis.
-  const Rgb a =
-      shade_point(open, Vector3f::UnitZ(), prepare_material(m, {}), {&none, &environment}, {});
-  const Rgb b =
-      shade_point(walled, Vector3f::UnitZ(), prepare_material(m, {}), {&none, &environment}, {});
+  const Rgb a = shade_point(kOpen, upward_point(), Vector3f::UnitZ(), prepare_material(m, {}),
+                            {&none, &environment}, {});
+  const Rgb b = shade_point(walled, upward_point(), Vector3f::UnitZ(), prepare_material(m, {}),
+                            {&none, &environment}, {});
   // A 64^2 texel is .055 rad, the lobe .14 wide across the edge: half a texel of offset is .15 of a
   // deviation.
   EXPECT_NEAR(b.x() / a.x(), 0.5, 0.08);
@@ -289,9 +284,9 @@ TEST(PrepareMaterials, RefusesWhatIsOutOfItsDomain) {
 
 TEST(ShadeVertices, RangesGiveTheSameAsTheWhole) {
   std::mt19937 random(kSeed);
-  const Transfer transfer = small_transfer(random, 50, 3);
+  const PreparedTransfer transfer = test::prepare_exactly(small_transfer(random, 50, 3));
   const LightRig rig = one_lobe(Vector3f(0, 1, 0), 5, 2, Rgb(1, 2, 3));
-  const PreparedLights lights = prepare_lights(rig, {});
+  const PreparedLights lights = prepare_lights(rig, transfer, {});
   const std::vector<PreparedMaterial> materials = prepare_materials(
       std::vector{diffuse_material(), metal(SpecularModel::ward, 0.3f, 0.1f)}, {});
   std::vector<std::uint8_t> ids(50);
@@ -317,6 +312,7 @@ TEST(Shade, IsFiniteAndNonNegativeForAdversarialInput) {
   transfer.normals[0] = Vector3f::Zero();
   transfer.positions[1] = Vector3f(0, 0, 5);  // the eye itself
   for (float& c : transfer.coefficients) c *= 1e3f;
+  const PreparedTransfer prepared_transfer = prepare_transfer(transfer);
   const PrefilteredEnvironment environment =
       prefilter_environment(Image(8, 4, Rgb::Constant(1e4f)));
   for (const float bandwidth : {0.0f, 1e-8f, 1.0f, 1e4f, 1e8f}) {
@@ -329,7 +325,7 @@ TEST(Shade, IsFiniteAndNonNegativeForAdversarialInput) {
         ShadingOptions options;
         options.visibility = visibility;
         options.cosine = cosine;
-        const PreparedLights lights = prepare_lights(rig, options);
+        const PreparedLights lights = prepare_lights(rig, prepared_transfer, options);
         for (const float alpha : {kMinAlpha, 0.1f, kMaxAlpha}) {
           Material m = metal(SpecularModel::ward, alpha, kMaxAlpha);
           m.diffuse = Rgb::Ones();
@@ -337,8 +333,8 @@ TEST(Shade, IsFiniteAndNonNegativeForAdversarialInput) {
           std::vector<Rgb> radiance(transfer.vertex_count());
           for (const PrefilteredEnvironment* map :
                {&environment, (const PrefilteredEnvironment*)nullptr}) {
-            shade_vertices(transfer, {&lights, map}, std::span(&prepared, 1), {}, Vector3f(0, 0, 5),
-                           options, 0, radiance);
+            shade_vertices(prepared_transfer, {&lights, map}, std::span(&prepared, 1), {},
+                           Vector3f(0, 0, 5), options, 0, radiance);
             for (size_t i = 0; i < radiance.size(); ++i)
               ASSERT_TRUE(radiance[i].allFinite() && (radiance[i] >= 0).all())
                   << "vertex " << i << " bandwidth " << bandwidth << " alpha " << alpha << ": "
@@ -355,7 +351,7 @@ TEST(PrepareLights, RefusesALobeOutsideItsDomainByItsNumber) {
   rig.lobes.resize(2);
   rig.lobes[1].lobe.bandwidth_y = -1;
   try {
-    prepare_lights(rig, {});
+    prepare_lights(rig, kOpen, {});
     FAIL() << "accepted";
   } catch (const std::invalid_argument& error) {
     EXPECT_STREQ(error.what(),

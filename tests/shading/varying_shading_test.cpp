@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "burnish/shading/shade_varying.h"
+#include "shading/small_transfer.h"
 
 namespace burnish::test {
 namespace {
@@ -34,7 +35,7 @@ PreparedLights two_lights() {
   lobe.color = {1, 2, 3};
   rig.lobes.push_back(lobe);
   rig.directionals.push_back({Vector3f(0.6f, 0, 0.8f), 0.3f, {3, 2, 1}});
-  return prepare_lights(rig, {});
+  return prepare_lights(rig, kOpen, {});
 }
 
 Material glossy() {
@@ -55,16 +56,17 @@ std::vector<Rgb> shade_uniform(const Transfer& transfer, const PreparedLights& l
   const ShadingOptions options;
   const std::vector<PreparedMaterial> prepared = prepare_materials({&material, 1}, options);
   std::vector<Rgb> radiance(kVertices);
-  shade_vertices(transfer, {&lights}, prepared, {}, kEye, options, 0, radiance);
+  shade_vertices(prepare_transfer(transfer), {&lights}, prepared, {}, kEye, options, 0, radiance);
   return radiance;
 }
 
 std::vector<Rgb> shade_varied(const Transfer& transfer, const PreparedLights& lights,
                               const Material& base, const MaterialVariation& variation) {
+  const PreparedTransfer prepared = prepare_transfer(transfer);
   std::vector<Rgb> radiance(kVertices);
   // In two ranges, as threads would.
   const auto part = [&](size_t first, size_t count) {
-    shade_vertices(transfer, {&lights}, base, variation, kEye, {}, first,
+    shade_vertices(prepared, {&lights}, base, variation, kEye, {}, first,
                    std::span(radiance).subspan(first, count));
   };
   part(0, 11);

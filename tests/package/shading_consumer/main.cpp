@@ -14,9 +14,10 @@ int main() {
   const burnish::Vector3f eye(0, 0, 5);
   const burnish::ShadingOptions options;
   const burnish::PreparedMaterial diffuse = burnish::prepare_material({}, options.specular);
-  const burnish::PreparedLights lights = burnish::prepare_lights(rig, options);
+  const burnish::PreparedTransfer prepared = burnish::prepare_transfer(transfer);
+  const burnish::PreparedLights lights = burnish::prepare_lights(rig, prepared, options);
   burnish::Rgb radiance;
-  burnish::shade_vertices(transfer, {&lights, nullptr}, {&diffuse, 1}, {}, eye, options, 0,
+  burnish::shade_vertices(prepared, {&lights, nullptr}, {&diffuse, 1}, {}, eye, options, 0,
                           {&radiance, 1});
   std::printf("%.7f\n", radiance.x());
 }
