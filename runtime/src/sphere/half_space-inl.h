@@ -1,4 +1,5 @@
-// The visible fractions of burnish/sphere/half_space.h on vectors of float: one lobe a lane.
+// The visible fractions of burnish/sphere/half_space.h on vectors of float or double: one lobe a
+// lane.
 
 #if defined(BURNISH_SPHERE_HALF_SPACE_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_SPHERE_HALF_SPACE_INL_H_

@@ -1,5 +1,6 @@
-// The lobe formulas of burnish/sphere/ on vectors of float: one lobe or direction a lane. No
-// branches but where a comment says so. A structure of vectors is named as its scalar counterpart.
+// The lobe formulas of burnish/sphere/ on vectors of float or double: one lobe or direction a lane.
+// No branches but where a comment says so. A structure of vectors is named as its scalar
+// counterpart.
 
 #if defined(BURNISH_SPHERE_LOBES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_SPHERE_LOBES_INL_H_

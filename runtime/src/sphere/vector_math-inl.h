@@ -1,5 +1,6 @@
 // Elementary functions on vectors of float, without branches. Errors are relative and were measured
-// over every target; tests/sphere/batch_test.cpp asserts them. A NaN gives some number or NaN.
+// over every target; tests/sphere/batch_test.cpp asserts them. A NaN gives some number or NaN. On
+// vectors of double they have the same ranges and approximations, and show the rounding of float.
 
 #if defined(BURNISH_SPHERE_VECTOR_MATH_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_SPHERE_VECTOR_MATH_INL_H_
@@ -7,6 +8,8 @@
 #else
 #define BURNISH_SPHERE_VECTOR_MATH_INL_H_
 #endif
+
+#include <cstdint>
 
 #include <hwy/highway.h>
 
@@ -26,6 +29,30 @@ HWY_INLINE V polynomial(D d, V x, float first, More... more) {
   return hn::MulAdd(polynomial(d, x, more...), x, hn::Set(d, first));
 }
 
+template <class D>
+inline constexpr bool kIsFloat = sizeof(hn::TFromD<D>) == 4;
+
+/// The whole number nearest to an x of at most 1000, and 2 to its power, which must be a normal
+/// number.
+template <class V>
+struct WholePower {
+  V exponent, power;
+};
+template <class D, class V>
+HWY_INLINE WholePower<V> nearest_power(D d, V x) {
+  if constexpr (kIsFloat<D>) {
+    const hn::RebindToSigned<D> di;
+    const auto exponent = hn::NearestInt(x);
+    return {hn::ConvertTo(d, exponent),
+            hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(exponent, hn::Set(di, 127))))};
+  } else {
+    // The last bits of such a sum are the exponent and its bias.
+    const hn::RebindToUnsigned<D> du;
+    const V shift = hn::Set(d, 0x1.8p52 + 1023), sum = hn::Add(x, shift);
+    return {hn::Sub(sum, shift), hn::BitCast(d, hn::ShiftLeft<52>(hn::BitCast(du, sum)))};
+  }
+}
+
 /// exp(x) = scale (1 + rest): scale is a power of 2, and |rest| < 0.42.
 template <class V>
 struct ExpParts {
@@ -35,17 +62,15 @@ struct ExpParts {
 /// Of exp(x + correction) for x in [-87.3, 88], |correction| < 0.1; the correction may be left out.
 template <class D, class V, class... Correction>
 HWY_INLINE ExpParts<V> exp_parts(D d, V x, Correction... correction) {
-  const hn::RebindToSigned<D> di;
-  const auto exponent = hn::NearestInt(hn::Mul(x, hn::Set(d, 1.44269504f)));
-  const V q = hn::ConvertTo(d, exponent);
+  const WholePower<V> nearest = nearest_power(d, hn::Mul(x, hn::Set(d, 1.44269504f)));
+  const V q = nearest.exponent;
   // ln 2 in two parts, of which the first has so few digits that q times it is exact.
   V r = hn::NegMulAdd(q, hn::Set(d, 0.693359375f), x);
   r = hn::NegMulAdd(q, hn::Set(d, -2.12194440e-4f), r);
   if constexpr (sizeof...(correction) > 0) r = hn::Add(r, correction...);
   const V curve = polynomial(d, r, 0.499999934f, 0.166665206f, 0.0416683879f, 0.00836871541f,
                              0.00138145999f);  // minimax, 3e-9
-  const V scale = hn::BitCast(d, hn::ShiftLeft<23>(hn::Add(exponent, hn::Set(di, 127))));
-  return {scale, hn::MulAdd(hn::Mul(r, r), curve, r)};
+  return {nearest.power, hn::MulAdd(hn::Mul(r, r), curve, r)};
 }
 
 /// exp(x) for x <= 88: 1 ulp; 0 for x < -85, where the result would be below 1.3e-37. (Its factors
@@ -72,12 +97,52 @@ HWY_INLINE V one_minus_exp_over(D d, V x) {
   return hn::IfThenElse(hn::Gt(x, hn::Zero(d)), hn::Div(one_minus_exp(d, x), x), one);
 }
 
+/// log(x) = exponent ln 2 + fraction slope, |fraction| < 0.42, for normal x > 0: 1e-7 of log(x).
+template <class V>
+struct LogParts {
+  V exponent, fraction, slope;
+};
+template <class D, class V>
+HWY_INLINE LogParts<V> log_parts(D d, V x) {
+  const hn::RebindToSigned<D> di;
+  using Int = hn::TFromD<decltype(di)>;
+  constexpr int kDigits = kIsFloat<D> ? 23 : 52;
+  const auto root_half =
+      hn::Set(di, static_cast<Int>(kIsFloat<D> ? 0x3F3504F3ll : 0x3FE6A09E667F3BCDll));
+  const auto bits = hn::BitCast(di, x);
+  const auto exponent = hn::ShiftRight<kDigits>(hn::Sub(bits, root_half));
+  const V fraction =
+      hn::Sub(hn::BitCast(d, hn::Sub(bits, hn::ShiftLeft<kDigits>(exponent))), hn::Set(d, 1.0f));
+  const V slope = polynomial(d, fraction, 1.0f, -0.499999881f, 0.333333254f, -0.250015855f,
+                             0.200019673f, -0.166090131f, 0.141818449f, -0.132434681f, 0.129046082f,
+                             -0.0762103796f);  // minimax, 5e-9
+  return {hn::ConvertTo(d, exponent), fraction, slope};
+}
+
+/// log(x) / (1 - x) for normal x > 0; -1 at 1: 1e-7. A lane's value does not depend on the others.
+template <class D, class V>
+HWY_INLINE V log_over_gap(D d, V x) {
+  const V gap = hn::Set(d, 1.0f) - x;
+  // Minimax for 1/2 to 1, 7e-9.
+  const V near_one =
+      polynomial(d, gap, -1.0f, -0.500001371f, -0.333245367f, -0.252162367f, -0.173287943f,
+                 -0.353380084f, 0.633551657f, -2.04687119f, 2.55274606f, -1.77568722f);
+  const auto is_near = hn::Ge(x, hn::Set(d, 0.5f));
+  if (hn::AllTrue(d, is_near)) return near_one;
+  const LogParts<V> log = log_parts(d, x);
+  const V value = hn::MulAdd(log.exponent, hn::Set(d, 0.693147181f), log.fraction * log.slope);
+  return hn::IfThenElse(is_near, near_one, value / gap);
+}
+
 /// exp(-x^2) for 0 <= x <= 9.3. The square's rounding error, which the exponential would magnify by
 /// x^2, is kept, with or without fused multiply-add.
 template <class D, class V>
 HWY_INLINE V exp_minus_square(D d, V x) {
   const hn::RebindToUnsigned<D> du;
-  const V head = hn::BitCast(d, hn::And(hn::BitCast(du, x), hn::Set(du, 0xFFFFF000u)));
+  using Bits = hn::TFromD<decltype(du)>;
+  // All but the last half of the digits: the head's square is exact.
+  const auto mask = hn::Set(du, static_cast<Bits>(kIsFloat<D> ? ~0xFFFull : ~0x7FFFFFFull));
+  const V head = hn::BitCast(d, hn::And(hn::BitCast(du, x), mask));
   const V rest = hn::Mul(hn::Sub(head, x), hn::Add(head, x));  // at most 2^-11 x^2
   const ExpParts<V> e = exp_parts(d, hn::Neg(hn::Mul(head, head)), rest);
   return hn::MulAdd(e.scale, e.rest, e.scale);

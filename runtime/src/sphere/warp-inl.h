@@ -1,5 +1,5 @@
-// The warps of burnish/sphere/spherical_warp.h on vectors of float: one lobe a lane. A structure of
-// vectors is named as its scalar counterpart.
+// The warps of burnish/sphere/spherical_warp.h on vectors of float or double: one lobe a lane. A
+// structure of vectors is named as its scalar counterpart.
 
 #if defined(BURNISH_SPHERE_WARP_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef BURNISH_SPHERE_WARP_INL_H_
@@ -57,6 +57,28 @@ struct WarpedAxes {
   V cosine, sine, length_squared;
 };
 
+/// The eigenvector of the larger eigenvalue of a symmetric matrix of 2 x 2: (cosine, sine) /
+/// sqrt(length_squared).
+template <class V>
+struct MajorAxis {
+  V cosine, sine, length_squared;
+};
+
+/// Of half the difference of its diagonal, and radius = sqrt(half_difference^2 + xy^2). Any axis
+/// where that is below 1e-12.
+template <class D, class V>
+HWY_INLINE MajorAxis<V> major_axis(D d, V half_difference, V xy, V radius) {
+  // It is along (radius + half_difference, xy), or, where that would cancel, (xy, radius -
+  // half_difference).
+  const V zero = hn::Zero(d);
+  const V other = hn::IfThenElseZero(hn::Lt(radius, hn::Set(d, 1e-12f)), hn::Set(d, 1.0f));
+  const V longer = hn::Add(hn::Add(radius, hn::Abs(half_difference)), other);
+  const V shorter = hn::Abs(xy);
+  const V swap = hn::IfThenElseZero(hn::Lt(half_difference, zero), hn::Xor(longer, shorter));
+  return {hn::Xor(longer, swap), hn::CopySign(hn::Xor(shorter, swap), xy),
+          hn::MulAdd(longer, longer, hn::Mul(xy, xy))};
+}
+
 /// internal::warped_axes.
 template <class D, class V>
 HWY_INLINE WarpedAxes<V> warped_axes(D d, V bandwidth_x, V bandwidth_y, const AcrossView<V>& across,
@@ -81,16 +103,11 @@ HWY_INLINE WarpedAxes<V> warped_axes(D d, V bandwidth_x, V bandwidth_y, const Ac
   result.bandwidth_x = hn::Min(hn::Mul(large, hn::Mul(larger, hn::Mul(larger, inverse))),
                                hn::Set(d, std::numeric_limits<float>::max()));
   result.bandwidth_y = hn::Mul(small, hn::Mul(cc, inverse));
-  // The eigenvector is along (radius + half_difference, m_xy), or, where that would cancel,
-  // (m_xy, radius - half_difference). `larger` is at least 5e-5: a lobe of this radius is round,
-  // and any axis will do.
-  const V other = hn::IfThenElseZero(hn::Lt(radius, hn::Set(d, 1e-12f)), one);
-  const V longer = hn::Add(hn::Add(radius, hn::Abs(half_difference)), other);
-  const V shorter = hn::Abs(m_xy);
-  const V swap = hn::IfThenElseZero(hn::Lt(half_difference, zero), hn::Xor(longer, shorter));
-  result.cosine = hn::Xor(longer, swap);
-  result.sine = hn::CopySign(hn::Xor(shorter, swap), m_xy);
-  result.length_squared = hn::MulAdd(longer, longer, square_xy);
+  // `larger` is at least 5e-5: a lobe of a radius of nothing is round, and any axis will do.
+  const MajorAxis<V> axis = major_axis(d, half_difference, m_xy, radius);
+  result.cosine = axis.cosine;
+  result.sine = axis.sine;
+  result.length_squared = axis.length_squared;
   return result;
 }
 
