@@ -5,12 +5,12 @@ namespace {
 
 float exponent(float alpha) { return 2 / (alpha * alpha); }
 
-/// sqrt((n_x + 1) (n_y + 1)); the product of the exponents has half the range of a float.
-float normalisation(const Material& material) {
+}  // namespace
+
+float ashikhmin_normalisation(const Material& material) {
+  // The product of the exponents has half the range of a float.
   return std::sqrt(exponent(material.alpha_x) + 1) * std::sqrt(exponent(material.alpha_y) + 1);
 }
-
-}  // namespace
 
 float eval_ashikhmin_lobe(const Material& material, const Vector3f& half) {
   const float sine2 = half.x() * half.x() + half.y() * half.y();
@@ -24,7 +24,7 @@ Rgb ashikhmin_smooth_factor(const Material& material, const Vector3f& outgoing,
   const float cos_d = std::max(cos_difference, kMinCosine);
   const float cosine = std::max({incoming.z(), outgoing.z(), kMinCosine});
   return material.specular * eval_fresnel(material.fresnel, cos_d) *
-         (normalisation(material) / (8 * kPi<float> * cos_d * cosine));
+         (ashikhmin_normalisation(material) / (8 * kPi<float> * cos_d * cosine));
 }
 
 Vector3f sample_ashikhmin_half(const Material& material, float u, float v) {
@@ -41,7 +41,7 @@ Vector3f sample_ashikhmin_half(const Material& material, float u, float v) {
 }
 
 float pdf_ashikhmin_half(const Material& material, const Vector3f& half) {
-  return normalisation(material) / (2 * kPi<float>)*eval_ashikhmin_lobe(material, half);
+  return ashikhmin_normalisation(material) / (2 * kPi<float>)*eval_ashikhmin_lobe(material, half);
 }
 
 }  // namespace burnish::internal

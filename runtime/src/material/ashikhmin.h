@@ -6,6 +6,8 @@
 /// Ward's of the same alpha.
 namespace burnish::internal {
 
+/// sqrt((n_x + 1) (n_y + 1))
+float ashikhmin_normalisation(const Material& material);
 /// (h.z)^((n_x h.x^2 + n_y h.y^2) / (1 - h.z^2)), h.z > 0.
 float eval_ashikhmin_lobe(const Material& material, const Vector3f& half);
 /// All the rest of the specular part.

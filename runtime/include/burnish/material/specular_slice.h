@@ -4,6 +4,7 @@
 #include <span>
 
 #include "burnish/material/material.h"
+#include "burnish/sphere/batch.h"
 #include "burnish/sphere/lobe_comb.h"
 
 /// What a viewer sees of a specular material, as lobes over incoming directions:
@@ -70,5 +71,16 @@ struct SliceLobe {
 /// below: its visible share is the visible fraction over that of the horizon alone.
 int specular_slice(const PreparedMaterial& prepared, const Vector3f& outgoing,
                    std::span<SliceLobe, kMaxSpecularTeeth> slice) noexcept;
+
+/// The same of one tooth, 0 <= tooth < prepared.count, from many views: SliceLobe as arrays. Where
+/// the weight is 0, the lobe is some valid one. A frame's y is z x x. Spans of one length; results
+/// may not be written over the views.
+struct SpecularSlices {
+  batch::DirectionResults x, z;
+  std::span<float> bandwidth_x, bandwidth_y, integral;
+  std::array<std::span<float>, 3> weight;
+};
+void specular_slices(const PreparedMaterial& prepared, int tooth, const batch::Directions& outgoing,
+                     const SpecularSlices& results) noexcept;
 
 }  // namespace burnish
