@@ -1,10 +1,12 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "burnish/light/environment_map.h"
 #include "burnish/sphere/anisotropic_gaussian.h"
+#include "burnish/sphere/batch.h"
 
 namespace burnish {
 
@@ -46,4 +48,16 @@ PrefilteredEnvironment prefilter_environment(const Image& environment,
 Rgb eval_prefiltered(const PrefilteredEnvironment& environment,
                      const AnisotropicGaussian<float>& lobe, int max_taps) noexcept;
 
+namespace batch {
+
+struct RgbResults {
+  std::span<float> red, green, blue;
+};
+
+/// Of many lobes, whose amplitudes do not matter and may be left out: results[i] of lobe i, in a
+/// fraction of the time.
+void eval_prefiltered(const PrefilteredEnvironment& environment, const AnisotropicGaussians& lobes,
+                      int max_taps, const RgbResults& results) noexcept;
+
+}  // namespace batch
 }  // namespace burnish

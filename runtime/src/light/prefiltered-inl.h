@@ -1,0 +1,308 @@
+// eval_prefiltered of a block of points, see burnish/light/prefiltered_environment.h: one lobe a
+// lane, but for the texels, which are fetched lane by lane. A lobe's mean radiance is a 2-D
+// Gaussian average over the unit disc of the orthographic plane, because (v . z) dv = dx dy.
+
+#if defined(BURNISH_LIGHT_PREFILTERED_INL_H_) == defined(HWY_TARGET_TOGGLE)
+#ifdef BURNISH_LIGHT_PREFILTERED_INL_H_
+#undef BURNISH_LIGHT_PREFILTERED_INL_H_
+#else
+#define BURNISH_LIGHT_PREFILTERED_INL_H_
+#endif
+
+#include <hwy/contrib/math/math-inl.h>
+#include <hwy/highway.h>
+
+#include "burnish/light/prefiltered_environment.h"
+#include "light/texel_rows-inl.h"
+#include "sphere/block.h"
+#include "sphere/lobes-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace burnish {
+namespace HWY_NAMESPACE {
+
+/// exp(x) for x <= 88, of double lanes by Highway.
+template <class D, class V>
+HWY_INLINE V exp_of(D d, V x) {
+  if constexpr (sizeof(hn::TFromD<D>) == sizeof(float))
+    return exp(d, x);
+  else
+    return hn::Exp(d, x);
+}
+
+/// erf(x) for x >= 0: 3e-7 absolute.
+template <class D, class V>
+HWY_INLINE V erf_of_positive(D d, V x) {
+  const V one = hn::Set(d, 1.0f);
+  const V t = one / hn::MulAdd(hn::Set(d, 0.4f), x, one);
+  return hn::NegMulAdd(exp_of(d, hn::Neg(x * x)), t * erfc_curve(d, t), one);
+}
+
+/// Mean square of a sine from the axis in one direction, for a lobe that the unit disc cuts off:
+/// (1 - b / (exp(b) - 1)) / (2 b).
+template <class D, class V>
+HWY_INLINE V disc_variance(D d, V bandwidth) {
+  const V one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  const auto is_narrow = hn::Gt(bandwidth, hn::Set(d, 16.0f));
+  const V narrow = half / hn::Max(bandwidth, half);
+  if (hn::AllTrue(d, is_narrow)) return narrow;
+  const V b = hn::Min(bandwidth, hn::Set(d, 16.0f));
+  const V e = exp_of(d, hn::Neg(b));
+  const V cut = hn::NegMulAdd(b, e / hn::Max(one - e, hn::Set(d, 0.1f)), one) * narrow;
+  const V series = hn::MulAdd(b, hn::MulAdd(b * b, hn::Set(d, 1.0f / 1440), hn::Set(d, -1.0f / 24)),
+                              hn::Set(d, 0.25f));
+  return hn::IfThenElse(is_narrow, narrow, hn::IfThenElse(hn::Lt(b, half), series, cut));
+}
+
+/// Taps reach this many deviations of their lobe's spread to both sides.
+inline constexpr float kTapReach = 3.3f;
+
+/// A lobe as a row of round taps of equal angles. One tap: the round lobe itself.
+template <class V>
+struct TapRow {
+  V taps;
+  V bandwidth;    ///< of a tap
+  V spacing;      ///< rad
+  V slope;        ///< a tap's weight falls as exp(-slope sine^2)
+  V narrow_root;  ///< root of the lobe's larger bandwidth
+};
+
+/// The bandwidth k for which round lobes of bandwidth `round`, spread by exp(-k sine^2) along an
+/// axis, make the lobe (round, wide): that of planes, 1 / k = 1 / wide - 1 / round, and what the
+/// disc's edge adds (half of what would keep the variance: the form by that, the half by the
+/// error).
+template <class D, class V>
+HWY_INLINE V spread_bandwidth(D d, V round, V wide) {
+  const V one = hn::Set(d, 1.0f);
+  V falloff = round * wide / hn::Max(round - wide, hn::Set(d, 1e-6f));
+  // Of lobes so narrow that the disc's edge is out of sight this is 0 in float.
+  if (hn::AllTrue(d, hn::Gt(wide, hn::Set(d, 22.0f)))) return falloff;
+  const V n = hn::Max(round, hn::Set(d, 2.0f));
+  const V w = hn::Min(wide, hn::Set(d, 30.0f));
+  const V edge = hn::Set(d, 1.15f) * exp_of(d, hn::NegMulAdd(hn::Set(d, 0.04f) * w, w,
+                                                             hn::Set(d, 0.7f) * hn::Log(d, w)));
+  const V fourth = hn::Set(d, 4.0f) / n;
+  falloff = hn::MulAdd(edge * hn::Set(d, 0.25f) * fourth, one + fourth, falloff);
+  return hn::Max(falloff, hn::Set(d, 1e-3f));
+}
+
+/// Spread along the long axis by a Gaussian of the variance that is missing from a round lobe. Taps
+/// 2 d s / sqrt(d^2 + s^2) apart, d and s the deviations of the round lobe and of the spread, add
+/// up smoothly.
+template <class D, class V>
+HWY_INLINE TapRow<V> plan_taps(D d, V bandwidth_x, V bandwidth_y, int max_taps) {
+  const V one = hn::Set(d, 1.0f), least = hn::Set(d, 1e-3f);
+  const V narrow = hn::Max(hn::Max(bandwidth_x, bandwidth_y), least);
+  const V wide = hn::Max(hn::Min(bandwidth_x, bandwidth_y), least);
+  TapRow<V> row;
+  row.narrow_root = hn::Sqrt(narrow);
+  const V reach = hn::Set(d, kTapReach);
+  const V wanted = hn::Min(reach * hn::Sqrt(narrow / wide), hn::Set(d, 1e15f));
+  const V most = hn::Set(d, static_cast<hn::TFromD<D>>(std::max(max_taps, 1)));
+  const V taps = hn::Min(hn::Ceil(wanted), most);
+  // Fewer taps than wanted are widened, not quite until they meet.
+  const V lack = wanted / taps;
+  const auto is_lacking = hn::Gt(lack, one);
+  V round = narrow;
+  if (!hn::AllFalse(d, is_lacking))
+    round = narrow * exp_of(d, hn::Set(d, -0.8f) * hn::Log(d, hn::Max(lack, one)));
+  const auto is_round = hn::Lt(round, hn::Set(d, 1.05f) * wide);
+  row.taps = hn::IfThenElse(is_round, one, taps);
+  row.bandwidth = row.narrow_root * hn::Sqrt(wide);
+  row.spacing = row.slope = hn::Zero(d);
+  if (hn::AllTrue(d, is_round)) return row;
+  const V widened = hn::MulAdd(
+      hn::Set(d, 0.55f), exp_of(d, hn::Max(hn::Set(d, -0.6f) * wide, hn::Set(d, -80.0f))), round);
+  row.bandwidth = hn::IfThenElse(is_round, row.bandwidth, widened);
+  if (max_taps <= 1) return row;
+  const V falloff = spread_bandwidth(d, round, wide);
+  const V half_turn = hn::Set(d, 1.57079633f);
+  const V along = reach * hn::Sqrt(hn::Set(d, 0.5f) / falloff);
+  const auto is_cut = hn::Gt(along, half_turn);  // by the disc, not by the taps
+  row.spacing = hn::Set(d, 2.0f) * hn::Min(along, half_turn) / taps;
+  // What the taps do not reach is 1.1 % of the variance.
+  row.slope = hn::IfThenElse(is_cut, falloff, falloff * hn::Set(d, 1 / 1.0114f));
+  return row;
+}
+
+/// Finds the two levels whose lobes are next to each lane's bandwidth, the narrower made of the
+/// map's own pixels beyond the last level, and the share of each.
+template <class D, class V, class T>
+HWY_INLINE void find_levels(D d, const PrefilteredEnvironment& environment, V bandwidth,
+                            LaneLevels<T>& lanes) {
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+  const auto& levels = environment.levels;
+  V index = zero;
+  for (size_t i = 1; i < levels.size(); ++i)
+    index = index + hn::IfThenElseZero(
+                        hn::Ge(bandwidth, hn::Set(d, static_cast<T>(levels[i].bandwidth))), one);
+  alignas(64) T indices[kMostLanes], wide_variance[kMostLanes], narrow_variance[kMostLanes];
+  hn::Store(index, d, indices);
+  for (size_t lane = 0; lane < hn::Lanes(d); ++lane) {
+    const auto* level = &levels[static_cast<size_t>(indices[lane])];
+    const bool is_last = level + 1 == levels.data() + levels.size();
+    wide_variance[lane] = static_cast<T>(level->variance);
+    narrow_variance[lane] = is_last ? T(-1) : static_cast<T>(level[1].variance);
+    lanes.set(0, lane, *level);
+    lanes.set(1, lane, is_last ? *level : level[1]);
+    if (is_last) lanes.texels[1][lane] = nullptr;
+  }
+  const V variance = disc_variance(d, bandwidth);
+  const V of_wide = hn::Load(d, wide_variance);
+  V of_narrow = hn::Load(d, narrow_variance);
+  of_narrow = hn::IfThenElse(hn::Lt(of_narrow, zero), hn::Min(hn::Set(d, 0.7f) * of_wide, variance),
+                             of_narrow);
+  hn::Store(of_narrow, d, lanes.narrow_variance);
+  // Blurring adds to what is seen in proportion to the variance added, where it adds little.
+  V share = hn::Min(hn::Max((of_wide - variance) / (of_wide - of_narrow), zero), one);
+  // Between two deviations of a factor of 2^(1/4) the narrower adds less than that.
+  share = hn::NegMulAdd(hn::Set(d, 0.22f) * share, one - share, share);
+  hn::Store(one - share, d, lanes.share[0]);
+  hn::Store(share, d, lanes.share[1]);
+}
+
+/// cube_from_direction, and the weights of the texels about it in both levels, times `weight`.
+template <class D, class V, class T>
+HWY_INLINE void place_tap(D d, const LaneLevels<T>& levels, const Vector3<V>& direction, V weight,
+                          LaneTaps<T>& taps) {
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  hn::Store(weight, d, taps.weight);
+  hn::Store(direction.x, d, taps.direction[0]);
+  hn::Store(direction.y, d, taps.direction[1]);
+  hn::Store(direction.z, d, taps.direction[2]);
+  const V x = hn::Abs(direction.x), y = hn::Abs(direction.y), z = hn::Abs(direction.z);
+  const auto is_x = hn::And(hn::Ge(x, y), hn::Ge(x, z));
+  const auto is_z = hn::AndNot(is_x, hn::Lt(y, z));
+  const auto pick = [&](V of_x, V of_y, V of_z) HWY_ATTR {
+    return hn::IfThenElse(is_x, of_x, hn::IfThenElse(is_z, of_z, of_y));
+  };
+  const V outward = pick(direction.x, direction.y, direction.z);
+  const V s = pick(direction.y, direction.z, direction.x);
+  const V t = pick(direction.z, direction.x, direction.y);
+  const V face = pick(zero, hn::Set(d, 2.0f), hn::Set(d, 4.0f)) +
+                 hn::IfThenElseZero(hn::Lt(outward, zero), one);
+  const V stretch = hn::Set(d, kCubeStretch), tiny = hn::Set(d, 1e-30f);
+  const V square = hn::Max(outward * outward, tiny);
+  const V scale = hn::Set(d, 1 + kCubeStretch) * hn::Abs(outward);
+  const V u = hn::MulAdd(scale * s, one / hn::MulAdd(stretch * s, s, square), one);
+  const V v = hn::MulAdd(scale * t, one / hn::MulAdd(stretch * t, t, square), one);
+  const hn::RebindToSigned<D> di;
+  for (int l = 0; l < 2; ++l) {
+    const V size = hn::Load(d, levels.half_size[l]), last = size + size - one;
+    const V texel_u = hn::Max(u * size, zero), texel_v = hn::Max(v * size, zero);
+    const V column = hn::Min(hn::Floor(texel_u), last), row = hn::Min(hn::Floor(texel_v), last);
+    const V stored_row = hn::MulAdd(face, last + hn::Set(d, 3.0f), row);
+    hn::Store(hn::ConvertTo(di, column), di, taps.column[l]);
+    hn::Store(hn::ConvertTo(di, stored_row), di, taps.row[l]);
+    const V tu = texel_u - column, tv = texel_v - row;
+    // Weights of a quadratic B-spline.
+    const V before_u = half * (one - tu) * (one - tu), after_u = half * tu * tu;
+    const V before_v = half * (one - tv) * (one - tv), after_v = half * tv * tv;
+    const V share = weight * hn::Load(d, levels.share[l]);
+    hn::Store(before_v, d, taps.before[l]);
+    hn::Store(after_v, d, taps.after[l]);
+    hn::StoreInterleaved4(share * before_u, share * (one - before_u - after_u), share * after_u,
+                          zero, d, taps.columns[l]);
+  }
+}
+
+template <class D, class V>
+HWY_INLINE Vector3<V> rotated(D d, const Eigen::Matrix3f& m, const Vector3<V>& v) {
+  const auto row = [&](int i) HWY_ATTR {
+    return hn::MulAdd(hn::Set(d, m(i, 0)), v.x,
+                      hn::MulAdd(hn::Set(d, m(i, 1)), v.y, hn::Set(d, m(i, 2)) * v.z));
+  };
+  return {row(0), row(1), row(2)};
+}
+
+/// Of a vector of points from `first` on. `weight_sum` of skipped ones stays 0.
+template <class D, class T>
+HWY_INLINE void eval_vector(D d, const PrefilteredEnvironment& environment, size_t first,
+                            const BlockLobes<T>& lobes, hn::Mask<D> is_active, int max_taps,
+                            BlockRgb<T>& result) {
+  using V = hn::VFromD<D>;
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  const auto load = [&](const BlockArray<T>& array)
+                        HWY_ATTR { return hn::Load(d, array.data() + first); };
+  const V bandwidth_x = load(lobes.bandwidth_x), bandwidth_y = load(lobes.bandwidth_y);
+  const TapRow<V> row = plan_taps(d, bandwidth_x, bandwidth_y, max_taps);
+  LaneLevels<T> levels;
+  find_levels(d, environment, row.bandwidth, levels);
+  const Vector3<V> z = {load(lobes.z.x), load(lobes.z.y), load(lobes.z.z)};
+  const Vector3<V> axis = rotated(d, environment.environment_from_world, z);
+  LaneSums<T> sums;
+  LaneTaps<T> taps;
+  const V steps = hn::IfThenElseZero(is_active, hn::Ceil(half * row.taps));
+  const V most_steps = hn::MaxOfLanes(d, steps);
+  V weight_sum = hn::IfThenElseZero(is_active, one);
+  const auto is_single = hn::Eq(row.taps, one);
+  if (hn::AllTrue(d, hn::Or(is_single, hn::Not(is_active)))) {
+    place_tap(d, levels, axis, weight_sum, taps);
+    fetch_taps(environment, levels, taps, hn::Lanes(d), true, sums);
+  } else {
+    const Vector3<V> x = {load(lobes.x.x), load(lobes.x.y), load(lobes.x.z)}, y = cross(z, x);
+    const auto x_is_long = hn::Lt(bandwidth_x, bandwidth_y);
+    const Vector3<V> long_axis = {hn::IfThenElse(x_is_long, x.x, y.x),
+                                  hn::IfThenElse(x_is_long, x.y, y.y),
+                                  hn::IfThenElse(x_is_long, x.z, y.z)};
+    const Vector3<V> along = rotated(d, environment.environment_from_world, long_axis);
+    weight_sum = zero;
+    const V halves = half * row.taps;
+    const V start = hn::IfThenZeroElse(hn::Lt(hn::Floor(halves), halves), half);  // odd: 0
+    const auto last = hn::GetLane(most_steps);
+    for (T step = 0; step < last; ++step) {
+      const V count = hn::Set(d, step), angle = row.spacing * (count + start);
+      const V s = sine(d, angle), c = sine(d, hn::Set(d, 1.57079633f) - angle);
+      // The Gaussian along the axis, and the share of its slab that lies inside the disc.
+      V weight = exp_of(d, hn::Neg(row.slope * s * s)) * c;
+      const V edge = row.narrow_root * c, three = hn::Set(d, 3.0f);
+      if (!hn::AllTrue(d, hn::Gt(edge, three)))
+        weight = weight * erf_of_positive(d, hn::Min(edge, three));
+      weight = hn::IfThenElseZero(hn::Lt(count, steps), weight);
+      const V other = hn::IfThenElseZero(hn::Gt(angle, zero), weight);
+      weight_sum = weight_sum + weight + other;
+      const Vector3<V> middle = {c * axis.x, c * axis.y, c * axis.z};
+      place_tap(d, levels,
+                {hn::MulAdd(s, along.x, middle.x), hn::MulAdd(s, along.y, middle.y),
+                 hn::MulAdd(s, along.z, middle.z)},
+                weight, taps);
+      fetch_taps(environment, levels, taps, hn::Lanes(d), step == 0, sums);
+      place_tap(d, levels,
+                {hn::NegMulAdd(s, along.x, middle.x), hn::NegMulAdd(s, along.y, middle.y),
+                 hn::NegMulAdd(s, along.z, middle.z)},
+                other, taps);
+      fetch_taps(environment, levels, taps, hn::Lanes(d), false, sums);
+    }
+  }
+  const V inverse = one / hn::Max(weight_sum, hn::Set(d, 1e-30f));
+  alignas(64) T reference[3][kMostLanes] = {}, sum[3][kMostLanes] = {};
+  sums.by_channel(hn::Lanes(d), reference, sum);
+  for (size_t c = 0; c < 3; ++c) {
+    const V mean = hn::MulAdd(hn::Load(d, sum[c]), inverse, hn::Load(d, reference[c]));
+    hn::Store(hn::IfThenElseZero(is_active, hn::Max(mean, zero)), d, result[c].data() + first);
+  }
+}
+
+/// Mean radiance of the environment under the lobe of each of `count` points (1..kBlock; lanes up
+/// to the next whole vector are valid): eval_prefiltered of each. Points whose weight is 0 in
+/// `active` are skipped (result 0).
+template <class D, class T = hn::TFromD<D>>
+void eval_prefiltered(D d, const PrefilteredEnvironment& environment, size_t count,
+                      const BlockLobes<T>& lobes, const BlockArray<T>& active, int max_taps,
+                      BlockRgb<T>& result) {
+  for (size_t first = 0; first < count; first += hn::Lanes(d)) {
+    const auto is_active = hn::And(hn::Ne(hn::Load(d, active.data() + first), hn::Zero(d)),
+                                   hn::FirstN(d, count - first));
+    if (hn::AllFalse(d, is_active)) {
+      for (auto& channel : result) hn::Store(hn::Zero(d), d, channel.data() + first);
+      continue;
+    }
+    eval_vector(d, environment, first, lobes, is_active, max_taps, result);
+  }
+}
+
+}  // namespace HWY_NAMESPACE
+}  // namespace burnish
+HWY_AFTER_NAMESPACE();
+
+#endif
