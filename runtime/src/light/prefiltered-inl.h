@@ -132,14 +132,10 @@ HWY_INLINE void find_levels(D d, const PrefilteredEnvironment& environment, V ba
                             LaneLevels<T>& lanes) {
   const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
   const auto& levels = environment.levels;
-  V index = zero;
-  for (size_t i = 1; i < levels.size(); ++i)
-    index = index + hn::IfThenElseZero(
-                        hn::Ge(bandwidth, hn::Set(d, static_cast<T>(levels[i].bandwidth))), one);
-  alignas(64) T indices[kMostLanes], wide_variance[kMostLanes], narrow_variance[kMostLanes];
-  hn::Store(index, d, indices);
+  alignas(64) T bandwidths[kMostLanes], wide_variance[kMostLanes], narrow_variance[kMostLanes];
+  hn::Store(bandwidth, d, bandwidths);
   for (size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-    const auto* level = &levels[static_cast<size_t>(indices[lane])];
+    const auto* level = &levels[level_below(levels, static_cast<float>(bandwidths[lane]))];
     const bool is_last = level + 1 == levels.data() + levels.size();
     wide_variance[lane] = static_cast<T>(level->variance);
     narrow_variance[lane] = is_last ? T(-1) : static_cast<T>(level[1].variance);
@@ -275,10 +271,13 @@ HWY_INLINE void eval_vector(D d, const PrefilteredEnvironment& environment, size
     }
   }
   const V inverse = one / hn::Max(weight_sum, hn::Set(d, 1e-30f));
-  alignas(64) T reference[3][kMostLanes] = {}, sum[3][kMostLanes] = {};
-  sums.by_channel(hn::Lanes(d), reference, sum);
+  V reference[4], sum[4];
+  hn::LoadInterleaved4(d, sums.reference[0], reference[0], reference[1], reference[2],
+                       reference[3]);
+  for (size_t lane = 0; lane < hn::Lanes(d); ++lane) add_parts(sums.parts[lane], sums.sum[lane]);
+  hn::LoadInterleaved4(d, sums.sum[0], sum[0], sum[1], sum[2], sum[3]);
   for (size_t c = 0; c < 3; ++c) {
-    const V mean = hn::MulAdd(hn::Load(d, sum[c]), inverse, hn::Load(d, reference[c]));
+    const V mean = hn::MulAdd(sum[c], inverse, reference[c]);
     hn::Store(hn::IfThenElseZero(is_active, hn::Max(mean, zero)), d, result[c].data() + first);
   }
 }

@@ -9,8 +9,12 @@
 #define BURNISH_LIGHT_TEXEL_ROWS_INL_H_
 #endif
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <cstring>
+#include <vector>
 
 #include <hwy/highway.h>
 
@@ -24,6 +28,18 @@ namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
 inline constexpr size_t kMostLanes = 16;
+
+/// The last level whose bandwidth is at most this, or the first. Levels are a factor of sqrt(2)
+/// apart, so that the exponent and the next bit all but tell.
+inline size_t level_below(const std::vector<PrefilteredEnvironment::Level>& levels,
+                          float bandwidth) {
+  const int half_octaves = static_cast<int>(std::bit_cast<std::uint32_t>(bandwidth) >> 22) - 254;
+  const int last = static_cast<int>(levels.size()) - 1;
+  auto i = static_cast<size_t>(std::clamp(half_octaves, 0, last));
+  while (i > 0 && bandwidth < levels[i].bandwidth) --i;
+  while (i + 1 < levels.size() && bandwidth >= levels[i + 1].bandwidth) ++i;
+  return i;
+}
 
 /// Of each lane the two levels that its taps are looked up in: the wider [0], the narrower [1].
 template <class T>
@@ -52,20 +68,24 @@ struct LaneTaps {
   alignas(64) T columns[2][4 * kMostLanes];  ///< of columns, times the tap's and the level's
 };
 
-/// sum / (sum of weights) + reference is a lane's mean radiance.
+/// sum / (sum of weights) + reference is a lane's mean radiance. The first tap clears its lane.
 template <class T>
 struct LaneSums {
-  alignas(64) T reference[kMostLanes][4] = {};
-  alignas(64) T sum[kMostLanes][16] = {};  ///< in four parts
+  alignas(64) T reference[kMostLanes][4];
+  alignas(64) T parts[kMostLanes][4][4];  ///< of the sum
+  alignas(64) T sum[kMostLanes][4];       ///< of the parts, when all are done
 
-  void by_channel(size_t lanes, T (&references)[3][kMostLanes], T (&sums)[3][kMostLanes]) const {
-    for (size_t lane = 0; lane < lanes; ++lane)
-      for (size_t c = 0; c < 3; ++c) {
-        references[c][lane] = reference[lane][c];
-        sums[c][lane] = (sum[lane][c] + sum[lane][4 + c]) + (sum[lane][8 + c] + sum[lane][12 + c]);
-      }
+  void clear(size_t lane) {
+    for (size_t c = 0; c < 4; ++c) reference[lane][c] = 0;
+    for (T(&part)[4] : parts[lane])
+      for (T& number : part) number = 0;
   }
 };
+
+template <class T>
+HWY_INLINE void add_parts(const T (&parts)[4][4], T (&sum)[4]) {
+  for (size_t c = 0; c < 4; ++c) sum[c] = (parts[0][c] + parts[1][c]) + (parts[2][c] + parts[3][c]);
+}
 
 /// Adds 3 x 3 texels, of which `corner` is the first. In double, which needs not be fast, and
 /// where vectors are shorter than a texel.
@@ -115,6 +135,11 @@ HWY_INLINE void add_texels(const float* corner, size_t stride, float before, flo
   }
   hn::Store(total, d, sum);
 }
+HWY_INLINE void add_parts(const float (&parts)[4][4], float (&sum)[4]) {
+  const hn::Full128<float> d;
+  const auto first = hn::Load(d, parts[0]) + hn::Load(d, parts[1]);
+  hn::Store(first + (hn::Load(d, parts[2]) + hn::Load(d, parts[3])), d, sum);
+}
 #endif
 
 /// Adds the map's own pixels. The first tap's are the reference.
@@ -130,7 +155,7 @@ void add_pixels(const Image& map, const LaneLevels<T>& levels, const LaneTaps<T>
   for (size_t c = 0; c < 4; ++c) {
     const T value = static_cast<T>(seen[static_cast<Eigen::Index>(c)]);
     if (is_first) sums.reference[lane][c] = value;
-    sums.sum[lane][c] += weight * (value - sums.reference[lane][c]);
+    sums.parts[lane][0][c] += weight * (value - sums.reference[lane][c]);
   }
 }
 
@@ -149,6 +174,7 @@ HWY_INLINE void fetch_taps(const PrefilteredEnvironment& environment, const Lane
                            const LaneTaps<T>& taps, size_t lanes, bool is_first,
                            LaneSums<T>& sums) {
   for (size_t lane = 0; lane < lanes; ++lane) {
+    if (is_first) sums.clear(lane);
     if (!(taps.weight[lane] > 0)) continue;
     const auto corner = [&](int l) HWY_ATTR {
       return levels.texels[l][lane] +
@@ -157,7 +183,7 @@ HWY_INLINE void fetch_taps(const PrefilteredEnvironment& environment, const Lane
     };
     const auto add = [&](int l, const float* first) HWY_ATTR {
       add_texels(first, levels.stride[l][lane], taps.before[l][lane], taps.after[l][lane],
-                 taps.columns[l] + 4 * lane, sums.reference[lane], sums.sum[lane]);
+                 taps.columns[l] + 4 * lane, sums.reference[lane], sums.parts[lane][0]);
     };
     if (!levels.texels[1][lane]) {
       add_pixels(environment.map, levels, taps, lane, is_first, sums);
@@ -165,9 +191,7 @@ HWY_INLINE void fetch_taps(const PrefilteredEnvironment& environment, const Lane
       continue;
     }
     const float* narrow = corner(1);
-    if (is_first)
-      for (size_t c = 0; c < 4; ++c)
-        sums.reference[lane][c] = narrow[levels.stride[1][lane] + 4 + c];
+    if (is_first) set_reference(narrow + levels.stride[1][lane] + 4, sums.reference[lane]);
     add(1, narrow);
     add(0, corner(0));
   }
