@@ -11,6 +11,7 @@
 
 #include "burnish/shading/prepared_lights.h"
 #include "shading/visibility-inl.h"
+#include "sphere/warp-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace burnish {
@@ -19,30 +20,6 @@ namespace HWY_NAMESPACE {
 template <class D>
 HWY_INLINE Vector3<hn::VFromD<D>> set(D d, const Vector3f& v) {
   return {hn::Set(d, v.x()), hn::Set(d, v.y()), hn::Set(d, v.z())};
-}
-
-/// Of a symmetric 2 x 2 matrix: the eigenvector of its larger eigenvalue, and half the eigenvalues'
-/// difference.
-template <class V>
-struct MajorAxis {
-  V x, y, radius;
-};
-
-template <class D, class V>
-HWY_INLINE MajorAxis<V> major_axis(D d, V xx, V xy, V yy) {
-  const V half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), zero = hn::Zero(d);
-  const V difference = hn::Mul(half, hn::Sub(xx, yy));
-  const V radius = hn::Sqrt(hn::MulAdd(difference, difference, hn::Mul(xy, xy)));
-  const auto round = hn::Eq(radius, zero);
-  const V inverse = hn::Div(one, hn::IfThenElse(round, one, radius));
-  const V cosine = hn::IfThenElse(round, one, hn::Mul(difference, inverse));
-  const V sine = hn::Mul(xy, inverse);
-  // Half angles: the larger by the root, the smaller by the sine.
-  const V dominant = hn::Sqrt(hn::Mul(half, hn::Add(one, hn::Abs(cosine))));
-  const V other = hn::Div(hn::Mul(half, sine), dominant);
-  const auto along_y = hn::Lt(cosine, zero);
-  return {hn::IfThenElse(along_y, hn::Abs(other), dominant),
-          hn::IfThenElse(along_y, hn::CopySign(dominant, sine), other), radius};
 }
 
 /// Where the product of a lobe and the clamped cosine peaks, and how wide it is there, in the
@@ -98,16 +75,20 @@ HWY_INLINE AnisotropicGaussian<V> lobe_times_cosine(D d, V bandwidth_x, V bandwi
                                   hn::MulAdd(hn::Mul(diagonal.y, ty.y), ty.y,
                                              hn::Mul(hn::Mul(diagonal.z, ty.z), ty.z))),
                        multiplier);
-  const MajorAxis<V> major = major_axis(d, xx, xy, yy);
+  const V difference = hn::Mul(half, hn::Sub(xx, yy));
+  const V radius = hn::Sqrt(hn::MulAdd(difference, difference, hn::Mul(xy, xy)));
+  const MajorAxis<V> major = major_axis(d, difference, xy, radius);
+  const V unit = hn::Div(one, hn::Sqrt(major.length_squared));
+  const V along_x = hn::Mul(unit, major.cosine), along_y = hn::Mul(unit, major.sine);
   AnisotropicGaussian<V> result;
-  result.x = {hn::MulAdd(major.x, tx.x, hn::Mul(major.y, ty.x)),
-              hn::MulAdd(major.x, tx.y, hn::Mul(major.y, ty.y)),
-              hn::MulAdd(major.x, tx.z, hn::Mul(major.y, ty.z))};
+  result.x = {hn::MulAdd(along_x, tx.x, hn::Mul(along_y, ty.x)),
+              hn::MulAdd(along_x, tx.y, hn::Mul(along_y, ty.y)),
+              hn::MulAdd(along_x, tx.z, hn::Mul(along_y, ty.z))};
   result.y = cross(v, result.x);
   result.z = v;
   const V middle = hn::MulSub(half, hn::Add(xx, yy), one), least = hn::Set(d, 0.05f);
-  result.bandwidth_x = hn::Max(hn::Mul(half, hn::Add(middle, major.radius)), least);
-  result.bandwidth_y = hn::Max(hn::Mul(half, hn::Sub(middle, major.radius)), least);
+  result.bandwidth_x = hn::Max(hn::Mul(half, hn::Add(middle, radius)), least);
+  result.bandwidth_y = hn::Max(hn::Mul(half, hn::Sub(middle, radius)), least);
   return result;
 }
 

@@ -13,7 +13,6 @@
 #include "shading/diffuse-inl.h"
 #include "shading/ladder_share.h"
 #include "shading/specular-inl.h"
-#include "sphere/warp-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace burnish {
