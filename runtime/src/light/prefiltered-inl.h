@@ -54,10 +54,7 @@ HWY_INLINE V disc_variance(D d, V bandwidth) {
   return hn::IfThenElse(is_narrow, narrow, hn::IfThenElse(hn::Lt(b, half), series, cut));
 }
 
-/// Taps reach this many deviations of their lobe's spread to both sides.
-inline constexpr float kTapReach = 3.3f;
-
-/// A lobe as a row of round taps of equal angles. One tap: the round lobe itself.
+/// A lobe as a row of round taps of equal angles. One tap: a round lobe.
 template <class V>
 struct TapRow {
   V taps;
@@ -74,54 +71,61 @@ struct TapRow {
 template <class D, class V>
 HWY_INLINE V spread_bandwidth(D d, V round, V wide) {
   const V one = hn::Set(d, 1.0f);
-  V falloff = round * wide / hn::Max(round - wide, hn::Set(d, 1e-6f));
-  // Of lobes so narrow that the disc's edge is out of sight this is 0 in float.
-  if (hn::AllTrue(d, hn::Gt(wide, hn::Set(d, 22.0f)))) return falloff;
-  const V n = hn::Max(round, hn::Set(d, 2.0f));
+  const V planar = round * wide / hn::Max(round - wide, hn::Set(d, 1e-6f));
+  // Of lobes so narrow that the disc's edge is out of sight it adds nothing in float.
+  if (hn::AllTrue(d, hn::Gt(wide, hn::Set(d, 22.0f)))) return planar;
   const V w = hn::Min(wide, hn::Set(d, 30.0f));
-  const V edge = hn::Set(d, 1.15f) * exp_of(d, hn::NegMulAdd(hn::Set(d, 0.04f) * w, w,
-                                                             hn::Set(d, 0.7f) * hn::Log(d, w)));
-  const V fourth = hn::Set(d, 4.0f) / n;
-  falloff = hn::MulAdd(edge * hn::Set(d, 0.25f) * fourth, one + fourth, falloff);
+  const V edge =
+      hn::Set(d, 1.15f) * hn::Sqrt(w * hn::Sqrt(w)) * exp_of(d, hn::Neg(hn::Set(d, 0.04f) * w * w));
+  const V inverse = one / hn::Max(round, hn::Set(d, 2.0f));
+  const V falloff = hn::MulAdd(edge * inverse, hn::MulAdd(hn::Set(d, 4.0f), inverse, one), planar);
   return hn::Max(falloff, hn::Set(d, 1e-3f));
 }
 
-/// Spread along the long axis by a Gaussian of the variance that is missing from a round lobe. Taps
-/// 2 d s / sqrt(d^2 + s^2) apart, d and s the deviations of the round lobe and of the spread, add
-/// up smoothly.
+/// How far the taps reach, in deviations of the lobe's spread. The forms and numbers of this and of
+/// plan_taps are fits to the least error (docs/lights.md, "Filtered maps").
+template <class D, class V>
+HWY_INLINE V tap_reach(D d, V taps, V taps_over_root) {
+  const V of_two = hn::MulAdd(hn::Set(d, 0.3f), taps_over_root, hn::Set(d, 1.5f));
+  const V of_more = hn::Min(hn::MulAdd(hn::Set(d, 0.5f), taps_over_root, hn::Set(d, 1.75f)),
+                            hn::MulAdd(hn::Set(d, 0.4f), taps, hn::Set(d, 1.2f)));
+  const V two = hn::Set(d, 2.0f);
+  return hn::IfThenElse(hn::Lt(taps, hn::Set(d, 2.5f)), hn::Min(of_two, two),
+                        hn::Max(hn::Min(of_more, hn::Set(d, 3.3f)), two));
+}
+
+/// Taps as narrow as the lobe, spread along its long axis by a Gaussian of the variance that is
+/// missing. Where they are too few to meet they are wider than the lobe is narrow.
 template <class D, class V>
 HWY_INLINE TapRow<V> plan_taps(D d, V bandwidth_x, V bandwidth_y, int max_taps) {
-  const V one = hn::Set(d, 1.0f), least = hn::Set(d, 1e-3f);
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), least = hn::Set(d, 1e-3f);
   const V narrow = hn::Max(hn::Max(bandwidth_x, bandwidth_y), least);
   const V wide = hn::Max(hn::Min(bandwidth_x, bandwidth_y), least);
-  TapRow<V> row;
-  row.narrow_root = hn::Sqrt(narrow);
-  const V reach = hn::Set(d, kTapReach);
-  const V wanted = hn::Min(reach * hn::Sqrt(narrow / wide), hn::Set(d, 1e15f));
-  const V most = hn::Set(d, static_cast<hn::TFromD<D>>(std::max(max_taps, 1)));
-  const V taps = hn::Min(hn::Ceil(wanted), most);
-  // Fewer taps than wanted are widened, not quite until they meet.
-  const V lack = wanted / taps;
-  const auto is_lacking = hn::Gt(lack, one);
-  V round = narrow;
-  if (!hn::AllFalse(d, is_lacking))
-    round = narrow * exp_of(d, hn::Set(d, -0.8f) * hn::Log(d, hn::Max(lack, one)));
-  const auto is_round = hn::Lt(round, hn::Set(d, 1.05f) * wide);
-  row.taps = hn::IfThenElse(is_round, one, taps);
+  TapRow<V> row = {one, zero, zero, zero, hn::Sqrt(narrow)};
   row.bandwidth = row.narrow_root * hn::Sqrt(wide);
-  row.spacing = row.slope = hn::Zero(d);
-  if (hn::AllTrue(d, is_round)) return row;
-  const V widened = hn::MulAdd(
-      hn::Set(d, 0.55f), exp_of(d, hn::Max(hn::Set(d, -0.6f) * wide, hn::Set(d, -80.0f))), round);
-  row.bandwidth = hn::IfThenElse(is_round, row.bandwidth, widened);
   if (max_taps <= 1) return row;
+  const V ratio = hn::Min(narrow / wide, hn::Set(d, 1e15f)), root = hn::Sqrt(ratio);
+  const V wanted = hn::Ceil(
+      hn::MulAdd(hn::Set(d, 2.9f), hn::Sqrt(hn::Max(ratio - one, zero)), hn::Set(d, 0.6f)));
+  row.taps = hn::Min(wanted, hn::Set(d, static_cast<hn::TFromD<D>>(max_taps)));
+  const auto is_single = hn::Lt(row.taps, hn::Set(d, 1.5f));
+  if (hn::AllTrue(d, is_single)) return row;
+  const V lack = root / row.taps;
+  const V widening =
+      hn::Sqrt(hn::Max(hn::MulAdd(hn::Set(d, 1.4f) * lack, lack * lack, hn::Set(d, 0.7f)), one));
+  const V round = narrow / hn::Min(widening, root);
   const V falloff = spread_bandwidth(d, round, wide);
-  const V half_turn = hn::Set(d, 1.57079633f);
-  const V along = reach * hn::Sqrt(hn::Set(d, 0.5f) / falloff);
-  const auto is_cut = hn::Gt(along, half_turn);  // by the disc, not by the taps
-  row.spacing = hn::Set(d, 2.0f) * hn::Min(along, half_turn) / taps;
-  // What the taps do not reach is 1.1 % of the variance.
-  row.slope = hn::IfThenElse(is_cut, falloff, falloff * hn::Set(d, 1 / 1.0114f));
+  const V edge = exp_of(d, hn::Max(hn::Set(d, -0.6f) * wide, hn::Set(d, -80.0f)));
+  row.bandwidth =
+      hn::IfThenElse(is_single, row.bandwidth, hn::MulAdd(hn::Set(d, 0.55f), edge, round));
+  const V reach = tap_reach(d, row.taps, one / lack);
+  const V angle = reach * hn::Sqrt(hn::Set(d, 0.5f) / falloff);
+  const V quarter_turn = hn::Set(d, 1.57079633f);
+  row.spacing = hn::Set(d, 2.0f) * hn::Min(angle, quarter_turn) / row.taps;
+  // What the taps do not reach, the disc's edge apart, is made up for by higher weights far out.
+  const V missing = hn::Set(d, 0.49f) * exp_of(d, hn::Set(d, -2.95f) * (reach - hn::Set(d, 2.0f)));
+  row.slope = hn::IfThenElse(hn::Gt(angle, quarter_turn), falloff,
+                             hn::NegMulAdd(falloff, missing, falloff));
   return row;
 }
 

@@ -41,10 +41,11 @@ struct PrefilterOptions {
 PrefilteredEnvironment prefilter_environment(const Image& environment,
                                              const PrefilterOptions& options = {});
 
-/// Mean radiance of the environment under a lobe: (integral of lobe * L) / (integral of lobe). An
-/// anisotropic lobe is a row of round taps along its long axis: 3.3 sqrt(ratio of the bandwidths),
-/// at most `max_taps`; fewer are wider. A constant environment gives exactly that constant, to the
-/// bit. Errors: docs/lights.md, "Filtered maps".
+/// Mean radiance of the environment under a lobe: (integral of lobe * L) / (integral of lobe), at
+/// least 0. An anisotropic lobe is a row of round taps along its long axis: 0.6 + 2.9 sqrt(r - 1)
+/// of them, rounded up, for a ratio r of the bandwidths, but at most `max_taps`; fewer are wider.
+/// 1 tap: the round lobe of the same area. A constant environment gives exactly that constant, to
+/// the bit. Errors: docs/lights.md, "Filtered maps".
 Rgb eval_prefiltered(const PrefilteredEnvironment& environment,
                      const AnisotropicGaussian<float>& lobe, int max_taps) noexcept;
 
