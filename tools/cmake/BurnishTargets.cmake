@@ -10,11 +10,25 @@ if(BURNISH_SANITIZE)
     -fsanitize=${BURNISH_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all
     # g++ warns of what the sanitizers insert, even in std::regex and std::function.
     $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+  if(BURNISH_SANITIZE MATCHES "undefined")
+    # AddressSanitizer finds what object-size could; vptr looks at classes with virtual functions.
+    target_compile_options(burnish_warnings INTERFACE -fno-sanitize=object-size,vptr)
+  endif()
   target_link_options(burnish_warnings INTERFACE -fsanitize=${BURNISH_SANITIZE})
   # The programs carry their sanitizer options, so that they need no environment.
   target_sources(burnish_warnings INTERFACE
     $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${CMAKE_CURRENT_LIST_DIR}/sanitizer_options.cpp>)
 endif()
+
+# burnish_inline_checked(SOURCES...): has clang++ inline all of Eigen in these sources of this folder
+# in a sanitized build, where the checks else take most of its functions past the inliner's limit and
+# its loops are up to 50 times slower. All checks stay but one: a dangling reference to a local that
+# inlining has made a register goes unseen. So for the few hottest sources only.
+function(burnish_inline_checked)
+  if(BURNISH_SANITIZE AND CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+    set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS -mllvm -inline-threshold=2000)
+  endif()
+endfunction()
 
 # burnish_library(NAME SOURCES...): the static library burnish::NAME of this folder. Its public
 # headers are those below include/, and all of them are installed.
