@@ -17,7 +17,7 @@ struct RunResult {
 };
 
 struct RunOptions {
-  double timeout_s = 120;        ///< then it is killed; far beyond what any test needs
+  double timeout_s = 600;        ///< then it is killed: ends hangs, far beyond any test
   bool terminal_stderr = false;  ///< stderr is a pseudo-terminal of 80 columns, not a pipe
   std::filesystem::path folder;  ///< working directory; empty: that of the test
   /// Asked whenever new output has come; the signal it returns, if not 0, is sent (once).
