@@ -68,7 +68,7 @@ struct PlaneScene {
 
   /// After a change of the transfer.
   void prepare() {
-    prepared = prepare_transfer(transfer, CoefficientType::float32);
+    prepared = prepare_transfer(transfer, RowFormat::float32);
     lights = prepare_lights(rig, prepared, options);
   }
 

@@ -221,8 +221,8 @@ TEST(PreparedTransfer, HalfPrecisionIsExactForItsOwnNumbers) {
   transfer.coefficients[2] = -3 * std::ldexp(1.0f, -24);
   const LightRig rig = random_rig(random);
   const PreparedTransfer half = prepare_transfer(transfer), single = prepare_exactly(transfer);
-  ASSERT_EQ(half.type, CoefficientType::float16);
-  ASSERT_EQ(single.type, CoefficientType::float32);
+  ASSERT_EQ(half.format, RowFormat::float16);
+  ASSERT_EQ(single.format, RowFormat::float32);
   EXPECT_TRUE(half.rows32.empty() && single.rows16.empty());
   const std::vector<Rgb> a = shade(half, vertex_points(half), rig);
   const std::vector<Rgb> b = shade(single, vertex_points(single), rig);
@@ -254,12 +254,12 @@ TEST(PreparedTransfer, WhatHalfPrecisionCannotHoldStaysSingle) {
   std::mt19937 random(kSeed);
   Transfer transfer =
       random_transfer({.vertices = 4, .terms = 5, .ladder_terms = 3, .ladders = 1}, random);
-  EXPECT_EQ(prepare_transfer(transfer).type, CoefficientType::float16);
+  EXPECT_EQ(prepare_transfer(transfer).format, RowFormat::float16);
   // Position, normal and tangent, the basis and the coefficients.
   EXPECT_EQ(prepare_transfer(transfer).bytes_per_vertex(), 36u + 1 + 2 * 8);
   EXPECT_EQ(prepare_exactly(transfer).bytes_per_vertex(), 36u + 1 + 4 * 8);
   transfer.ladder_coefficients.back() = 65505;
-  EXPECT_EQ(prepare_transfer(transfer).type, CoefficientType::float32);
+  EXPECT_EQ(prepare_transfer(transfer).format, RowFormat::float32);
   EXPECT_EQ(kOpen.bytes_per_vertex(), 36u);
 }
 

@@ -39,7 +39,7 @@ inline Transfer vertex_that_sees(SsdfBasis basis, LadderBasis ladder, float cros
 
 /// With the coefficients as they are.
 inline PreparedTransfer prepare_exactly(const Transfer& transfer) {
-  return prepare_transfer(transfer, CoefficientType::float32);
+  return prepare_transfer(transfer, RowFormat::float32);
 }
 
 }  // namespace burnish::test
