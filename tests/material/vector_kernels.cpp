@@ -36,7 +36,7 @@ void smooth_factor_batch(const Material& material, const BlockVector3<float>& ou
       const auto m = smooth_factor<decltype(kind)::value>(d, n, view, i, cos_difference);
       factor = factor * m.over / m.under;
     });
-    const RgbVector<Vec> color = eval_color(d, n, o.z, i.z, cos_difference);
+    const RgbVector<Vec> color = eval_color(d, n, cos_difference);
     for (size_t channel = 0; channel < 3; ++channel)
       hn::Store(color[channel] * factor * hn::Set(d, n.specular[static_cast<int>(channel)]), d,
                 result[channel].data() + k);

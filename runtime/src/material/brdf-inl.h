@@ -9,13 +9,13 @@
 #define BURNISH_MATERIAL_BRDF_INL_H_
 #endif
 
-#include <array>
 #include <limits>
 #include <type_traits>
 
 #include <hwy/highway.h>
 
 #include "material/brdf_numbers.h"
+#include "material/fitted_specular-inl.h"
 #include "material/half_vector.h"
 #include "sphere/lobes-inl.h"
 #include "sphere/vector_math-inl.h"
@@ -91,7 +91,7 @@ template <class V>
 struct BrdfView {
   Vector3<V> outgoing;
   V cosine;  ///< held above 0
-  V area;    ///< facing_area, where Smith's shadowing needs it
+  V area;    ///< facing_area, where Smith's shadowing needs it; of `fitted`, its masking
 };
 
 inline constexpr bool has_microfacets(BrdfKind kind) {
@@ -104,10 +104,11 @@ HWY_INLINE BrdfView<V> view_brdf(D d, const BrdfNumbers& n, const Vector3<V>& ou
   if constexpr (has_microfacets(kKind))
     if (n.shadowing != Shadowing::v_cavity)
       view.area = hn::Max(facing_area<kKind>(d, n, outgoing), view.cosine);
+  if constexpr (kKind == BrdfKind::fitted) view.area = eval_masking(d, *n.fitted, outgoing.z);
   return view;
 }
 
-/// specular_smooth_factor, see above; 1 for `fitted`.
+/// specular_smooth_factor, see above.
 template <BrdfKind kKind, class D, class V>
 HWY_INLINE Quotient<V> smooth_factor(D d, const BrdfNumbers& n, const BrdfView<V>& view,
                                      const Vector3<V>& incoming, V cos_difference) {
@@ -131,7 +132,7 @@ HWY_INLINE Quotient<V> smooth_factor(D d, const BrdfNumbers& n, const BrdfView<V
     if (n.shadowing == Shadowing::smith_separable) return {one, area * view.area};
     return {one, hn::MulAdd(cos_o, area, cos_i * (view.area - cos_o))};
   } else {
-    return {one, one};
+    return {view.area * eval_masking(d, *n.fitted, incoming.z), one};
   }
 }
 
@@ -216,36 +217,20 @@ HWY_INLINE V eval_fresnel(D d, const BrdfNumbers& n, int channel, V cos_differen
     case FresnelKind::conductor:
       return conductor(d, n.fresnel.eta[channel], n.fresnel.k[channel], c);
     case FresnelKind::none:
+    case FresnelKind::table:
       break;
   }
   return one;
 }
 
-/// Factors of the same points, by channel.
-template <class V>
-using RgbVector = std::array<V, 3>;
-
-/// The Fresnel factor; for `fitted`, lane by lane, its smooth factor.
+/// The Fresnel factor, or what stands for it in `fitted`.
 template <class D, class V>
-HWY_INLINE RgbVector<V> eval_color(D d, const BrdfNumbers& n, V cos_outgoing, V cos_incoming,
-                                   V cos_difference) {
-  if (n.kind != BrdfKind::fitted) {
-    const V first = eval_fresnel(d, n, 0, cos_difference);
-    if (n.is_grey) return {first, first, first};
-    return {first, eval_fresnel(d, n, 1, cos_difference), eval_fresnel(d, n, 2, cos_difference)};
-  }
-  using T = hn::TFromD<D>;
-  HWY_ALIGN T o[hn::MaxLanes(d)], i[hn::MaxLanes(d)], c[hn::MaxLanes(d)];
-  HWY_ALIGN T rgb[3][hn::MaxLanes(d)];
-  hn::Store(cos_outgoing, d, o);
-  hn::Store(cos_incoming, d, i);
-  hn::Store(cos_difference, d, c);
-  for (size_t lane = 0; lane < hn::Lanes(d); ++lane) {
-    const Rgb value = eval_smooth_factor(*n.fitted, static_cast<float>(o[lane]),
-                                         static_cast<float>(i[lane]), static_cast<float>(c[lane]));
-    for (int channel = 0; channel < 3; ++channel) rgb[channel][lane] = value[channel];
-  }
-  return {hn::Load(d, rgb[0]), hn::Load(d, rgb[1]), hn::Load(d, rgb[2])};
+HWY_INLINE RgbVector<V> eval_color(D d, const BrdfNumbers& n, V cos_difference) {
+  if (n.fresnel_kind == FresnelKind::table)
+    return eval_color_by_difference(d, *n.fitted, cos_difference);
+  const V first = eval_fresnel(d, n, 0, cos_difference);
+  if (n.is_grey) return {first, first, first};
+  return {first, eval_fresnel(d, n, 1, cos_difference), eval_fresnel(d, n, 2, cos_difference)};
 }
 
 }  // namespace HWY_NAMESPACE

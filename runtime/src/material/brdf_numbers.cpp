@@ -40,7 +40,10 @@ BrdfNumbers brdf_numbers(const Material& material) noexcept {
   numbers.kind = kind_of(material);
   numbers.specular = material.specular;
   numbers.fitted = material.fitted.get();
-  if (numbers.kind == BrdfKind::fitted) return numbers;
+  if (numbers.kind == BrdfKind::fitted) {
+    numbers.fresnel_kind = FresnelKind::table;
+    return numbers;
+  }
   const Microfacets facets = microfacets_of(material);
   numbers.shadowing = material.shadowing;
   numbers.alpha_x = facets.alpha_x;

@@ -10,8 +10,8 @@ namespace burnish::internal {
 /// SpecularModel, and for cook_torrance its distribution.
 enum class BrdfKind { ward, ward_balanced, ashikhmin, beckmann, ggx, blinn_phong, fitted };
 
-/// Reflectance by channel, as FresnelModel has it, or 1.
-enum class FresnelKind { none, schlick, dielectric, conductor };
+/// Reflectance by channel, as FresnelModel has it, or 1, or a table of FittedSpecular.
+enum class FresnelKind { none, schlick, dielectric, conductor, table };
 
 struct BrdfNumbers {
   BrdfKind kind = BrdfKind::ward;

@@ -67,7 +67,7 @@ HWY_NOINLINE void weigh_nodes(D d, const PreparedMaterial& prepared, const BrdfN
   for (int j = 0; j < nodes.count; ++j) {
     const Vector3<V> incoming = nodes.incoming[j];
     Quotient<V> f = smooth_factor<kKind>(d, numbers, view, incoming, nodes.cos_difference[j]);
-    if constexpr (kKind != BrdfKind::fitted) {
+    if constexpr (kKind != BrdfKind::fitted) {  // whose lobes are exact
       if (corrects) {
         const Quotient<V> more =
             distribution_over_lobes<kKind>(d, prepared, numbers, nodes.half[j]);
@@ -79,42 +79,40 @@ HWY_NOINLINE void weigh_nodes(D d, const PreparedMaterial& prepared, const BrdfN
   }
 }
 
+/// color_nodes of a Fresnel factor normal + (1 - normal) rise: linear, so that two sums are enough.
+template <class D, class V>
+HWY_INLINE RgbVector<V> color_linear(D d, const Rgb& specular, const Rgb& normal,
+                                     SliceNodes<V>& nodes) {
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
+  const Rgb low = specular * normal, more = specular * (1 - normal);
+  const V all_low = hn::Set(d, low.sum()), all_more = hn::Set(d, more.sum());
+  V total = zero, rising = zero;
+  for (int j = 0; j < nodes.count; ++j) {
+    const V c = hn::Min(hn::Max(nodes.cos_difference[j], zero), one);
+    const V share = nodes.share[j], rise = schlick_rise(d, c);
+    total = total + share;
+    rising = hn::MulAdd(share, rise, rising);
+    nodes.share[j] = share * hn::MulAdd(all_more, rise, all_low);
+  }
+  const auto channel = [&](int k) HWY_ATTR {
+    return hn::MulAdd(total, hn::Set(d, low[k]), rising * hn::Set(d, more[k]));
+  };
+  return {channel(0), channel(1), channel(2)};
+}
+
 /// The nodes' sum, by channel, without BrdfNumbers::scale; their shares become sums over channels.
 template <class D, class V>
-HWY_NOINLINE RgbVector<V> color_nodes(D d, const BrdfNumbers& n, V cos_outgoing,
-                                      SliceNodes<V>& nodes) {
-  const Rgb& specular = n.specular;
+HWY_NOINLINE RgbVector<V> color_nodes(D d, const BrdfNumbers& n, SliceNodes<V>& nodes) {
+  if (n.fresnel_kind == FresnelKind::schlick)
+    return color_linear(d, n.specular, n.fresnel.normal_reflectance, nodes);
+  if (n.fresnel_kind == FresnelKind::none) return color_linear(d, n.specular, Rgb::Ones(), nodes);
   const V zero = hn::Zero(d);
   RgbVector<V> sum = {zero, zero, zero};
-  if (n.fresnel_kind == FresnelKind::none || n.fresnel_kind == FresnelKind::schlick) {
-    // normal + (1 - normal) rise: linear, so that two sums are enough.
-    const bool is_schlick = n.fresnel_kind == FresnelKind::schlick && n.kind != BrdfKind::fitted;
-    const Rgb normal = is_schlick ? n.fresnel.normal_reflectance : Rgb::Ones();
-    if (n.kind != BrdfKind::fitted) {
-      const V all = hn::Set(d, (specular * normal).sum());
-      const V all_rise = hn::Set(d, (specular * (1 - normal)).sum());
-      V total = zero, rising = zero;
-      for (int j = 0; j < nodes.count; ++j) {
-        const V c = hn::Min(hn::Max(nodes.cos_difference[j], zero), hn::Set(d, 1.0f));
-        const V share = nodes.share[j], rise = schlick_rise(d, c);
-        total = total + share;
-        rising = hn::MulAdd(share, rise, rising);
-        nodes.share[j] = share * hn::MulAdd(all_rise, rise, all);
-      }
-      for (int channel = 0; channel < 3; ++channel) {
-        const V low = hn::Set(d, specular[channel] * normal[channel]);
-        const V rise = hn::Set(d, specular[channel] * (1 - normal[channel]));
-        sum[static_cast<size_t>(channel)] = hn::MulAdd(total, low, rising * rise);
-      }
-      return sum;
-    }
-  }
   for (int j = 0; j < nodes.count; ++j) {
-    const RgbVector<V> color =
-        eval_color(d, n, cos_outgoing, nodes.incoming[j].z, nodes.cos_difference[j]);
+    const RgbVector<V> color = eval_color(d, n, nodes.cos_difference[j]);
     V total = zero;
     for (size_t channel = 0; channel < 3; ++channel) {
-      const V scale = hn::Set(d, specular[static_cast<int>(channel)]);
+      const V scale = hn::Set(d, n.specular[static_cast<int>(channel)]);
       const V part = nodes.share[j] * (color[channel] * scale);
       sum[channel] = sum[channel] + part;
       total = total + part;
@@ -306,8 +304,7 @@ HWY_INLINE void match_moments(D d, const BlockVector3<T>& outgoing, ToothBlock<D
     add_nodes(d, block.frame, block.seen[v], plan[v], block.nodes[v]);
   weigh_block(d, block.prepared.corrects_distribution, block);
   RgbVector<V> sum[kVectors<D>];
-  for (size_t v = 0; v < block.vectors; ++v)
-    sum[v] = color_nodes(d, block.numbers, block.seen[v].outgoing.z, block.nodes[v]);
+  for (size_t v = 0; v < block.vectors; ++v) sum[v] = color_nodes(d, block.numbers, block.nodes[v]);
   Covariance<V> covariance[kVectors<D>];
   for (size_t v = 0; v < block.vectors; ++v)
     covariance[v] = covariance_of(d, block.seen[v].local, block.nodes[v]);
@@ -344,8 +341,7 @@ HWY_INLINE void take_peak(D d, const BlockVector3<T>& outgoing, ToothBlock<D>& b
   weigh_block(d, false, block);
   const V scale = hn::Set(d, block.tooth.lobe.amplitude * block.numbers.scale);
   for (size_t v = 0; v < block.vectors; ++v) {
-    const RgbVector<V> sum =
-        color_nodes(d, block.numbers, block.seen[v].outgoing.z, block.nodes[v]);
+    const RgbVector<V> sum = color_nodes(d, block.numbers, block.nodes[v]);
     store_weight(d, sum, scale, outgoing, v * hn::Lanes(d), result);
   }
 }

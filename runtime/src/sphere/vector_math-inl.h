@@ -224,6 +224,14 @@ HWY_INLINE V quarter_arctangent(D d, V x) {
                     0.0677426212f, -0.0477744490f, 0.0271789395f, -0.0102299920f, 0.00181438666f));
 }
 
+/// acos(x) * 2 / pi for x in [0, 1]: 1e-7.
+template <class D, class V>
+HWY_INLINE V quarter_arccosine(D d, V x) {
+  return hn::Sqrt(hn::Set(d, 1.0f) - x) *
+         polynomial(d, x, 1.0f, -0.13661778f, 0.0566447154f, -0.031935513f, 0.0196478348f,
+                    -0.0108512435f, 0.00422627153f, -0.000797974237f);  // minimax, 3e-8
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace burnish
 HWY_AFTER_NAMESPACE();
