@@ -21,23 +21,6 @@ HWY_BEFORE_NAMESPACE();
 namespace burnish {
 namespace HWY_NAMESPACE {
 
-/// exp(x) for x <= 88, of double lanes by Highway.
-template <class D, class V>
-HWY_INLINE V exp_of(D d, V x) {
-  if constexpr (sizeof(hn::TFromD<D>) == sizeof(float))
-    return exp(d, x);
-  else
-    return hn::Exp(d, x);
-}
-
-/// erf(x) for x >= 0: 3e-7 absolute.
-template <class D, class V>
-HWY_INLINE V erf_of_positive(D d, V x) {
-  const V one = hn::Set(d, 1.0f);
-  const V t = one / hn::MulAdd(hn::Set(d, 0.4f), x, one);
-  return hn::NegMulAdd(exp_of(d, hn::Neg(x * x)), t * erfc_curve(d, t), one);
-}
-
 /// Mean square of a sine from the axis in one direction, for a lobe that the unit disc cuts off:
 /// (1 - b / (exp(b) - 1)) / (2 b).
 template <class D, class V>
@@ -47,7 +30,7 @@ HWY_INLINE V disc_variance(D d, V bandwidth) {
   const V narrow = half / hn::Max(bandwidth, half);
   if (hn::AllTrue(d, is_narrow)) return narrow;
   const V b = hn::Min(bandwidth, hn::Set(d, 16.0f));
-  const V e = exp_of(d, hn::Neg(b));
+  const V e = exp(d, hn::Neg(b));
   const V cut = hn::NegMulAdd(b, e / hn::Max(one - e, hn::Set(d, 0.1f)), one) * narrow;
   const V series = hn::MulAdd(b, hn::MulAdd(b * b, hn::Set(d, 1.0f / 1440), hn::Set(d, -1.0f / 24)),
                               hn::Set(d, 0.25f));
@@ -76,7 +59,7 @@ HWY_INLINE V spread_bandwidth(D d, V round, V wide) {
   if (hn::AllTrue(d, hn::Gt(wide, hn::Set(d, 22.0f)))) return planar;
   const V w = hn::Min(wide, hn::Set(d, 30.0f));
   const V edge =
-      hn::Set(d, 1.15f) * hn::Sqrt(w * hn::Sqrt(w)) * exp_of(d, hn::Neg(hn::Set(d, 0.04f) * w * w));
+      hn::Set(d, 1.15f) * hn::Sqrt(w * hn::Sqrt(w)) * exp(d, hn::Neg(hn::Set(d, 0.04f) * w * w));
   const V inverse = one / hn::Max(round, hn::Set(d, 2.0f));
   const V falloff = hn::MulAdd(edge * inverse, hn::MulAdd(hn::Set(d, 4.0f), inverse, one), planar);
   return hn::Max(falloff, hn::Set(d, 1e-3f));
@@ -115,7 +98,7 @@ HWY_INLINE TapRow<V> plan_taps(D d, V bandwidth_x, V bandwidth_y, int max_taps) 
       hn::Sqrt(hn::Max(hn::MulAdd(hn::Set(d, 1.4f) * lack, lack * lack, hn::Set(d, 0.7f)), one));
   const V round = narrow / hn::Min(widening, root);
   const V falloff = spread_bandwidth(d, round, wide);
-  const V edge = exp_of(d, hn::Max(hn::Set(d, -0.6f) * wide, hn::Set(d, -80.0f)));
+  const V edge = exp(d, hn::Max(hn::Set(d, -0.6f) * wide, hn::Set(d, -80.0f)));
   row.bandwidth =
       hn::IfThenElse(is_single, row.bandwidth, hn::MulAdd(hn::Set(d, 0.55f), edge, round));
   const V reach = tap_reach(d, row.taps, one / lack);
@@ -123,7 +106,7 @@ HWY_INLINE TapRow<V> plan_taps(D d, V bandwidth_x, V bandwidth_y, int max_taps) 
   const V quarter_turn = hn::Set(d, 1.57079633f);
   row.spacing = hn::Set(d, 2.0f) * hn::Min(angle, quarter_turn) / row.taps;
   // What the taps do not reach, the disc's edge apart, is made up for by higher weights far out.
-  const V missing = hn::Set(d, 0.49f) * exp_of(d, hn::Set(d, -2.95f) * (reach - hn::Set(d, 2.0f)));
+  const V missing = hn::Set(d, 0.49f) * exp(d, hn::Set(d, -2.95f) * (reach - hn::Set(d, 2.0f)));
   row.slope = hn::IfThenElse(hn::Gt(angle, quarter_turn), falloff,
                              hn::NegMulAdd(falloff, missing, falloff));
   return row;
@@ -254,7 +237,7 @@ HWY_INLINE void eval_vector(D d, const PrefilteredEnvironment& environment, size
       const V count = hn::Set(d, step), angle = row.spacing * (count + start);
       const V s = sine(d, angle), c = sine(d, hn::Set(d, 1.57079633f) - angle);
       // The Gaussian along the axis, and the share of its slab that lies inside the disc.
-      V weight = exp_of(d, hn::Neg(row.slope * s * s)) * c;
+      V weight = exp(d, hn::Neg(row.slope * s * s)) * c;
       const V edge = row.narrow_root * c, three = hn::Set(d, 3.0f);
       if (!hn::AllTrue(d, hn::Gt(edge, three)))
         weight = weight * erf_of_positive(d, hn::Min(edge, three));

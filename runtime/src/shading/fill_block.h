@@ -84,4 +84,21 @@ void add_point(const PreparedTransfer& transfer, const ShadingPoint& point,
   ++block.count;
 }
 
+/// The same of a vertex: find_vertex_views does the rest.
+template <class T>
+void add_vertex(const PreparedTransfer& transfer, size_t vertex, ShadingBlock<T>& block) {
+  const size_t i = block.count;
+  block.position[i] = transfer.positions[vertex];
+  internal::set_vector(transfer.positions[vertex], i, block.outgoing);
+  internal::set_vector(transfer.normals[vertex], i, block.normal);
+  internal::set_vector(transfer.tangents[vertex], i, block.tangent);
+  if (!transfer.bases.empty()) {
+    VisibilityRow<T>& row = internal::row_of(transfer, transfer.basis_id[vertex], block);
+    row.vertex_count = 1;
+    row.vertex[0] = static_cast<std::uint32_t>(vertex);
+    row.vertex_weight[0] = row.weight = 1;
+  }
+  ++block.count;
+}
+
 }  // namespace burnish

@@ -38,14 +38,15 @@ float lit_bandwidth(const AnisotropicGaussian<float>& lobe) {
 }
 
 void add_boundary(const PreparedTransfer& transfer, const PreparedTransfer::Basis& basis, int terms,
-                  const PreparedLobe& light, size_t column, LobeBoundaries& boundaries) {
+                  const PreparedLobe& light, size_t lights, size_t column,
+                  LobeBoundaries& boundaries) {
   const Vector3f& axis = light.lobe.frame.z;
   const Vector2<float> uv = direction_to_octahedral(axis);
   const auto footprint = octahedral_footprint(uv, transfer.resolution);
   const Vector3f by_u = octahedral_gradient(axis, uv, 1.0f, 0.0f);
   const Vector3f by_v = octahedral_gradient(axis, uv, 0.0f, 1.0f);
   const size_t stride = padded_terms(transfer.terms);
-  const size_t width = padded_terms(static_cast<int>(boundaries.mean.size()));
+  const size_t width = boundary_columns(lights);
   for (int i = 0; i < 4; ++i) {
     const size_t texel = static_cast<size_t>(footprint.texel[i]);
     const Vector3f slope = footprint.weight_u[i] * by_u + footprint.weight_v[i] * by_v;
@@ -67,11 +68,12 @@ void make_boundaries(const PreparedTransfer& transfer, const ShadingOptions& opt
   for (size_t b = 0; b < lights.boundaries.size(); ++b) {
     LobeBoundaries& boundaries = lights.boundaries[b];
     boundaries.mean.assign(columns, 0.0f);
-    boundaries.rows.assign(static_cast<size_t>(terms) * padded_terms(static_cast<int>(columns)),
+    boundaries.rows.assign(static_cast<size_t>(terms) * boundary_columns(lights.narrow.size()),
                            0.0f);
     for (size_t i = 0; i < lights.narrow.size(); ++i)
       add_boundary(transfer, transfer.bases[b], terms,
-                   lights.lobes[static_cast<size_t>(lights.narrow[i])], 3 * i, boundaries);
+                   lights.lobes[static_cast<size_t>(lights.narrow[i])], lights.narrow.size(), 3 * i,
+                   boundaries);
   }
 }
 

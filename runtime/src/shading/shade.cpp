@@ -14,6 +14,7 @@
 #include <hwy/highway.h>
 
 #include "shading/frame-inl.h"
+#include "shading/vertex_block-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace burnish {
@@ -26,6 +27,16 @@ void shade_block_of_floats(const PreparedTransfer& transfer, const PreparedMater
   shade_block(hn::ScalableTag<float>(), transfer, material, lighting, options, block, radiance);
 }
 
+void shade_vertex_block(const PreparedTransfer& transfer, const PreparedMaterial& material,
+                        const Lighting& lighting, const ShadingOptions& options,
+                        const Vector3f& eye, ShadingBlock<float>& block,
+                        BlockRgb<float>& radiance) {
+  const hn::ScalableTag<float> d;
+  pad_block(block);
+  find_vertex_views(d, eye, block);
+  shade_block(d, transfer, material, lighting, options, block, radiance);
+}
+
 }  // namespace
 }  // namespace HWY_NAMESPACE
 }  // namespace burnish
@@ -36,6 +47,7 @@ namespace burnish {
 namespace {
 
 HWY_EXPORT(shade_block_of_floats);
+HWY_EXPORT(shade_vertex_block);
 
 Rgb rgb_of(const BlockRgb<float>& rgb, size_t i) { return {rgb[0][i], rgb[1][i], rgb[2][i]}; }
 
@@ -56,13 +68,10 @@ void shade_group(const PreparedTransfer& transfer, const Lighting& lighting,
   for (size_t done = 0; done < index.size();) {
     start_block(block);
     const size_t start = done;
-    for (; done < index.size() && has_room(transfer, block); ++done) {
-      const ShadingPoint point = vertex_shading_point(transfer, first + index[done]);
-      add_point(transfer, point, point.frame.to_local(toward(eye, point.position, point.frame.z)),
-                block);
-    }
-    HWY_DYNAMIC_DISPATCH(shade_block_of_floats)
-    (transfer, material, lighting, options, block, result);
+    for (; done < index.size() && has_room(transfer, block); ++done)
+      add_vertex(transfer, first + index[done], block);
+    HWY_DYNAMIC_DISPATCH(shade_vertex_block)
+    (transfer, material, lighting, options, eye, block, result);
     for (size_t i = 0; i < block.count; ++i) radiance[index[start + i]] = rgb_of(result, i);
   }
 }

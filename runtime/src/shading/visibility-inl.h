@@ -180,24 +180,25 @@ template <class D, class V>
 HWY_INLINE Vector3<V> octahedral_gradient(D d, const Vector3<V>& direction, V by_u, V by_v) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), tiny = hn::Set(d, 1e-6f);
   const V x = hn::Abs(direction.x), y = hn::Abs(direction.y), z = hn::Abs(direction.z);
-  const V radius = hn::Sqrt(hn::MulAdd(x, x, hn::Mul(y, y)));
+  const V radius = root(d, hn::MulAdd(x, x, hn::Mul(y, y)));
   const auto off_axis = hn::Gt(radius, tiny);
-  const V inverse = hn::Div(one, hn::Max(radius, tiny));
+  const V inverse = reciprocal(d, hn::Max(radius, tiny));
   const V cosine = hn::IfThenElse(off_axis, hn::Mul(x, inverse), one);
   const V sine = hn::IfThenElseZero(off_axis, hn::Mul(y, inverse));
   const V large = hn::Max(x, y), small = hn::Min(x, y);
-  const V angle =
-      quarter_arctangent(d, hn::IfThenElseZero(off_axis, hn::Div(small, hn::Max(large, tiny))));
+  const V angle = quarter_arctangent(
+      d, hn::IfThenElseZero(off_axis, hn::Mul(small, reciprocal(d, hn::Max(large, tiny)))));
   const V share = hn::IfThenElse(hn::Lt(x, y), hn::Sub(one, angle), angle);
   const auto below = hn::Lt(direction.z, zero);
   const V by_p0 = hn::CopySign(one, direction.x) * by_u,
           by_q0 = hn::CopySign(one, direction.y) * by_v;
   const V by_p = hn::IfThenElse(below, hn::Neg(by_q0), by_p0);
   const V by_q = hn::IfThenElse(below, hn::Neg(by_p0), by_q0);
-  const V root = hn::Sqrt(hn::Add(one, z));
+  const V root_z = root(d, hn::Add(one, z));
   const V outward =
-      hn::Mul(hn::Mul(hn::Set(d, 0.5f), root), hn::MulAdd(share, hn::Sub(by_q, by_p), by_p));
-  const V around = hn::Div(hn::Mul(hn::Set(d, 0.636619772f), hn::Sub(by_q, by_p)), root);
+      hn::Mul(hn::Mul(hn::Set(d, 0.5f), root_z), hn::MulAdd(share, hn::Sub(by_q, by_p), by_p));
+  const V around =
+      hn::Mul(hn::Mul(hn::Set(d, 0.636619772f), hn::Sub(by_q, by_p)), reciprocal(d, root_z));
   const V along = hn::Mul(outward, z);
   return {hn::CopySign(one, direction.x) * hn::MulSub(along, cosine, hn::Mul(around, sine)),
           hn::CopySign(one, direction.y) * hn::MulAdd(along, sine, hn::Mul(around, cosine)),
@@ -209,8 +210,9 @@ template <class D, class V>
 HWY_INLINE V sine_of_ssdf(D d, V value, float amplitude_rad) {
   if (!(amplitude_rad > 0)) return sine(d, held_distance(d, value));
   const V one = hn::Set(d, 1.0f), size = hn::Min(hn::Abs(value), hn::Set(d, 0.9999999f));
-  const V distance = hn::Mul(hn::Set(d, amplitude_rad / 2),
-                             hn::Log(d, hn::Div(hn::Add(one, size), hn::Sub(one, size))));
+  const V distance =
+      hn::Mul(hn::Set(d, amplitude_rad / 2),
+              hn::Log(d, hn::Mul(hn::Add(one, size), reciprocal(d, hn::Sub(one, size)))));
   return sine(d, held_distance(d, hn::CopySign(distance, value)));
 }
 
@@ -218,9 +220,9 @@ HWY_INLINE V sine_of_ssdf(D d, V value, float amplitude_rad) {
 /// direction is rounding noise, and it is 0.
 template <class D, class V>
 HWY_INLINE Vector3<V> unit_gradient(D d, const Vector3<V>& gradient, float least) {
-  const V length = hn::Sqrt(dot(gradient, gradient)), bound = hn::Set(d, least);
+  const V square = dot(gradient, gradient), bound = hn::Set(d, least * least);
   const V scale =
-      hn::IfThenElseZero(hn::Gt(length, bound), hn::Div(hn::Set(d, 1.0f), hn::Max(length, bound)));
+      hn::IfThenElseZero(hn::Gt(square, bound), reciprocal_root(d, hn::Max(square, bound)));
   return {hn::Mul(gradient.x, scale), hn::Mul(gradient.y, scale), hn::Mul(gradient.z, scale)};
 }
 
@@ -264,35 +266,93 @@ HWY_INLINE Boundary<V> horizon(D d, const Vector3<V>& normal, const Vector3<V>& 
   return {sine, unit_gradient(d, gradient, 1e-6f)};
 }
 
-/// visible_fraction of a lobe past a boundary.
+/// What directional_bandwidth needs of a lobe, of bandwidths from 1e-3 to 1e12.
+template <class V>
+struct DirectionalShape {
+  V small, large, ratio, mean;
+  V wide_x, wide_y, narrow_x, narrow_y;  ///< select the components along the axes: 0 or 1
+};
+
 template <class D, class V>
-HWY_INLINE V visible_fraction(D d, VisibilityModel model, const AnisotropicGaussian<V>& lobe,
-                              const Boundary<V>& boundary) {
-  const V one = hn::Set(d, 1.0f);
-  if (model == VisibilityModel::directional) {
-    const V bandwidth =
-        directional_bandwidth(d, lobe.bandwidth_x, lobe.bandwidth_y, dot(boundary.gradient, lobe.x),
-                              dot(boundary.gradient, lobe.y));
-    const V root = hn::Max(hn::Sqrt(bandwidth), hn::Set(d, 1e-18f));
-    return visible_from_hidden(d, gaussian_tail(d, hn::Mul(root, hn::Abs(boundary.sine)), root),
-                               boundary.sine);
-  }
+HWY_INLINE DirectionalShape<V> directional_shape(D d, const AnisotropicGaussian<V>& lobe) {
+  const V one = hn::Set(d, 1.0f), least = hn::Set(d, 1e-3f), most = hn::Set(d, 1e12f);
+  const V large = hn::Min(hn::Max(hn::Max(lobe.bandwidth_x, lobe.bandwidth_y), least), most);
+  const V low = hn::Min(hn::Max(hn::Min(lobe.bandwidth_x, lobe.bandwidth_y), least), most);
+  const V shift =
+      hn::Mul(hn::Sub(large, low), reciprocal(d, hn::Mul(hn::Add(one, low), hn::Add(one, large))));
+  const V small = hn::MulAdd(hn::Set(d, 2.0f / 3), shift, low);
+  const auto x_is_wide = hn::Lt(lobe.bandwidth_x, lobe.bandwidth_y);
+  const V wide_x = hn::IfThenElseZero(x_is_wide, one);
+  const V wide_y = hn::IfThenZeroElse(x_is_wide, one);
+  return {small,
+          large,
+          hn::Mul(small, reciprocal(d, large)),
+          root(d, hn::Mul(small, large)),
+          wide_x,
+          wide_y,
+          wide_y,
+          wide_x};
+}
+
+/// directional_bandwidth for a unit gradient, or none, by its components in the lobe's frame.
+template <class D, class V>
+HWY_INLINE V directional_bandwidth(D d, const DirectionalShape<V>& shape, V x, V y) {
+  const V tiny = hn::Set(d, 1e-12f);
+  const V w = hn::MulAdd(x, shape.wide_x, hn::Mul(y, shape.wide_y));
+  const V n = hn::MulAdd(x, shape.narrow_x, hn::Mul(y, shape.narrow_y));
+  const V wide = hn::Mul(w, w), narrow = hn::Mul(n, n), square = hn::Add(wide, narrow);
+  const auto is_flat = hn::Lt(square, tiny);
+  const V numerator = hn::Mul(shape.small, square);
+  const V across =
+      hn::Mul(numerator, reciprocal(d, hn::Max(hn::MulAdd(narrow, shape.ratio, wide), tiny)));
+  const V along =
+      hn::Mul(numerator, reciprocal(d, hn::Max(hn::MulAdd(wide, shape.ratio, narrow), tiny)));
+  const V held = hn::IfThenElse(is_flat, shape.mean, hn::Min(across, shape.large));
+  const V held_along = hn::IfThenElse(is_flat, shape.mean, hn::Min(along, shape.large));
+  const V bend = reciprocal(d, hn::MulAdd(hn::Set(d, 2.0f), held_along, hn::Set(d, 2.5f)));
+  return hn::NegMulAdd(held, bend, held);
+}
+
+/// visible_fraction_directional to 4e-7, from the sine of the distance.
+template <class D, class V>
+HWY_INLINE V fraction_past(D d, V bandwidth, V sine) {
+  const V half = hn::Set(d, 0.5f), far = root(d, bandwidth);
+  const V seen = hn::CopySign(erf_of_positive(d, hn::Mul(far, hn::Abs(sine))), sine);
+  if (hn::AllTrue(d, hn::Gt(far, hn::Set(d, 4.0f)))) return hn::MulAdd(half, seen, half);
+  return hn::MulAdd(hn::Mul(half, seen), reciprocal(d, erf_of_positive(d, far)), half);
+}
+
+/// visible_fraction of a lobe past a boundary, by the models of the papers.
+template <class D, class V>
+HWY_INLINE V round_fraction(D d, VisibilityModel model, const AnisotropicGaussian<V>& lobe,
+                            V sine) {
   const V sharpness =
       hn::Mul(hn::Set(d, 2.0f), hn::Mul(hn::Sqrt(lobe.bandwidth_x), hn::Sqrt(lobe.bandwidth_y)));
   if (model == VisibilityModel::hemisphere) {
-    const V cosine =
-        hn::Sqrt(hn::Max(hn::NegMulAdd(boundary.sine, boundary.sine, one), hn::Zero(d)));
+    const V one = hn::Set(d, 1.0f);
+    const V cosine = root(d, hn::Max(hn::NegMulAdd(sine, sine, one), hn::Zero(d)));
     const V half_sine =
-        hn::Div(boundary.sine, hn::Sqrt(hn::Mul(hn::Set(d, 2.0f), hn::Add(one, cosine))));
+        hn::Mul(sine, reciprocal_root(d, hn::Mul(hn::Set(d, 2.0f), hn::Add(one, cosine))));
     return hemisphere_fraction(d, prepare_hemisphere(d, sharpness), half_sine);
   }
   using T = hn::TFromD<D>;
   HWY_ALIGN T fractions[hn::MaxLanes(D())], sines[hn::MaxLanes(D())];
   hn::Store(sharpness, d, fractions);
-  hn::Store(boundary.sine, d, sines);
+  hn::Store(sine, d, sines);
   for (size_t j = 0; j < hn::Lanes(d); ++j)
     fractions[j] = visible_fraction_cap(fractions[j], std::asin(std::clamp(sines[j], T(-1), T(1))));
   return hn::Load(d, fractions);
+}
+
+/// visible_fraction of a lobe past a boundary.
+template <class D, class V>
+HWY_INLINE V visible_fraction(D d, VisibilityModel model, const AnisotropicGaussian<V>& lobe,
+                              const Boundary<V>& boundary) {
+  if (model != VisibilityModel::directional) return round_fraction(d, model, lobe, boundary.sine);
+  const V bandwidth =
+      directional_bandwidth(d, directional_shape(d, lobe), dot(boundary.gradient, lobe.x),
+                            dot(boundary.gradient, lobe.y));
+  return fraction_past(d, bandwidth, boundary.sine);
 }
 
 /// Of what of a lobe is above a normal's horizon, the part that is visible. Both vanish together
@@ -300,10 +360,26 @@ HWY_INLINE V visible_fraction(D d, VisibilityModel model, const AnisotropicGauss
 template <class D, class V>
 HWY_INLINE V visible_share(D d, VisibilityModel model, const AnisotropicGaussian<V>& lobe,
                            const Boundary<V>& boundary, const Vector3<V>& normal) {
-  const V seen = visible_fraction(d, model, lobe, boundary);
-  const V above = visible_fraction(d, model, lobe, horizon(d, normal, lobe.z));
-  const V one = hn::Set(d, 1.0f);
-  return hn::IfThenElse(hn::Lt(seen, above), hn::Div(seen, above), one);
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+  V seen, above;
+  if (model == VisibilityModel::directional) {
+    const DirectionalShape<V> shape = directional_shape(d, lobe);
+    const V horizon_sine = dot(normal, lobe.z);
+    // The horizon's gradient is the normal, but for its part along the axis, which no axis of the
+    // lobe sees.
+    seen = fraction_past(d,
+                         directional_bandwidth(d, shape, dot(boundary.gradient, lobe.x),
+                                               dot(boundary.gradient, lobe.y)),
+                         boundary.sine);
+    above = fraction_past(
+        d, directional_bandwidth(d, shape, dot(normal, lobe.x), dot(normal, lobe.y)), horizon_sine);
+  } else {
+    seen = round_fraction(d, model, lobe, boundary.sine);
+    above = round_fraction(d, model, lobe, dot(normal, lobe.z));
+  }
+  const V least = hn::Set(d, 1e-7f);  // what rounding leaves of nothing
+  const V share = hn::Mul(hn::Max(seen, zero), reciprocal(d, hn::Max(above, least)));
+  return hn::Min(hn::IfThenElse(hn::Gt(above, least), share, one), one);
 }
 
 }  // namespace HWY_NAMESPACE

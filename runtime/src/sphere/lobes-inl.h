@@ -225,8 +225,8 @@ HWY_INLINE V mean_clamped_cosine(D d, const LobeMoments<V>& m, const Vector3<V>&
   const V mean = hn::Mul(z, m.mean_z);
   const V variance =
       hn::MulAdd(xx, m.mean_xx, hn::MulAdd(yy, m.mean_yy, hn::Mul(zz, m.variance_z)));
-  const V deviation = hn::Sqrt(variance);
-  const V inverse = hn::Div(hn::Set(d, 1.0f), hn::Max(deviation, hn::Set(d, 1e-12f)));
+  const V deviation = root(d, variance);
+  const V inverse = reciprocal(d, hn::Max(deviation, hn::Set(d, 1e-12f)));
   const V limit = hn::Set(d, 7.0f);  // from 6 on, r itself does not matter
   const V r = hn::Max(hn::Min(hn::Mul(mean, inverse), limit), hn::Neg(limit));
   const V three = hn::Set(d, 3.0f), six = hn::Set(d, 6.0f);
@@ -252,7 +252,7 @@ HWY_INLINE V mean_clamped_cosine(D d, const LobeMoments<V>& m, const Vector3<V>&
   const V above = hn::IfThenElse(hn::Lt(r, zero), below, hn::Sub(hn::Set(d, 1.0f), below));
   const V value = hn::MulAdd(hn::Mul(deviation, density), hn::Add(hn::Set(d, 1.0f), correction),
                              hn::Mul(mean, above));
-  const V highest = hn::Mul(half, hn::Add(mean, hn::Sqrt(hn::MulAdd(mean, mean, variance))));
+  const V highest = hn::Mul(half, hn::Add(mean, root(d, hn::MulAdd(mean, mean, variance))));
   const V held = hn::Min(hn::Max(value, hn::Max(mean, zero)), highest);
   return hn::IfThenElse(hn::Lt(hn::Abs(r), six), held, hn::Max(mean, zero));
 }

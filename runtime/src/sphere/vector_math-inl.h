@@ -53,6 +53,42 @@ HWY_INLINE WholePower<V> nearest_power(D d, V x) {
   }
 }
 
+/// 1 / x for |x| in [1e-37, 1e37]: 2 ulp. A third of a division's time.
+template <class D, class V>
+HWY_INLINE V reciprocal(D d, V x) {
+  if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
+    const V two = hn::Set(d, 2.0f);
+    V y = hn::ApproximateReciprocal(x);
+#if !HWY_ARCH_X86 || HWY_TARGET == HWY_SCALAR  // where the estimate has 8 bits instead of 12
+    y = hn::Mul(y, hn::NegMulAdd(x, y, two));
+#endif
+    return hn::Mul(y, hn::NegMulAdd(x, y, two));
+  } else {
+    return hn::Div(hn::Set(d, 1.0f), x);
+  }
+}
+
+/// 1 / sqrt(x) for x in [1e-36, 1e36]: 3 ulp.
+template <class D, class V>
+HWY_INLINE V reciprocal_root(D d, V x) {
+  if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
+    const V half = hn::Mul(hn::Set(d, 0.5f), x), three_halves = hn::Set(d, 1.5f);
+    V y = hn::ApproximateReciprocalSqrt(x);
+#if !HWY_ARCH_X86 || HWY_TARGET == HWY_SCALAR
+    y = hn::Mul(y, hn::NegMulAdd(half, hn::Mul(y, y), three_halves));
+#endif
+    return hn::Mul(y, hn::NegMulAdd(half, hn::Mul(y, y), three_halves));
+  } else {
+    return hn::Div(hn::Set(d, 1.0f), hn::Sqrt(x));
+  }
+}
+
+/// sqrt(x) for x in [0, 1e36]: 3 ulp from 1e-36 on.
+template <class D, class V>
+HWY_INLINE V root(D d, V x) {
+  return hn::Mul(x, reciprocal_root(d, hn::Max(x, hn::Set(d, 1e-36f))));
+}
+
 /// exp(x) = scale (1 + rest): scale is a power of 2, and |rest| < 0.42.
 template <class V>
 struct ExpParts {
@@ -169,7 +205,7 @@ template <class D, class V>
 HWY_INLINE V erfc(D d, V x) {
   const V limit = hn::Set(d, kErfcIsZeroFrom), one = hn::Set(d, 1.0f);
   const V y = hn::Min(x, limit);
-  const V t = hn::Div(one, hn::MulAdd(hn::Set(d, 0.4f), y, one));
+  const V t = reciprocal(d, hn::MulAdd(hn::Set(d, 0.4f), y, one));
   const V value = hn::Mul(exp_minus_square(d, y), hn::Mul(t, erfc_curve(d, t)));
   return hn::IfThenElseZero(hn::Lt(x, limit), value);
 }
@@ -183,7 +219,7 @@ HWY_INLINE V gaussian_tail(D d, V x, V far) {
   const V near_x = hn::Min(x, limit), near_far = hn::Min(far, limit);
   const V p = hn::Set(d, 0.4f);
   const V below_x = hn::MulAdd(p, near_x, one), below_far = hn::MulAdd(p, near_far, one);
-  const V inverse = hn::Div(one, hn::Mul(below_x, below_far));
+  const V inverse = reciprocal(d, hn::Mul(below_x, below_far));
   const V t_x = hn::Mul(inverse, below_far), t_far = hn::Mul(inverse, below_x);
   const V erfc_x = hn::IfThenElseZero(
       hn::Lt(x, limit), hn::Mul(exp_minus_square(d, near_x), hn::Mul(t_x, erfc_curve(d, t_x))));
@@ -197,6 +233,16 @@ HWY_INLINE V gaussian_tail(D d, V x, V far) {
                                      hn::Sub(erfc_x, erfc_far));
   const V whole = hn::IfThenElse(is_small, small_far, hn::Sub(one, erfc_far));
   return hn::Max(hn::Div(numerator, hn::Add(whole, whole)), hn::Zero(d));
+}
+
+/// erf(x) for x >= 0: 2e-7 of 1. Without the tail's digits, in half the time of erfc.
+template <class D, class V>
+HWY_INLINE V erf_of_positive(D d, V x) {
+  const V one = hn::Set(d, 1.0f), y = hn::Min(x, hn::Set(d, 4.0f));
+  const V t = reciprocal(d, hn::MulAdd(hn::Set(d, 0.3275911f), y, one));
+  const V curve = polynomial(d, t, 0.254829592f, -0.284496736f, 1.421413741f, -1.453152027f,
+                             1.061405429f);  // abramowitz1964, 7.1.26
+  return hn::NegMulAdd(hn::Mul(t, curve), exp(d, hn::Neg(hn::Mul(y, y))), one);
 }
 
 /// sin(x) for |x| <= pi / 2: 2 ulp.

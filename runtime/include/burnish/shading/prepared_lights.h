@@ -43,8 +43,11 @@ struct IrradianceTable {
 /// coefficients + mean.
 struct LobeBoundaries {
   std::vector<float> mean;  ///< [lobes][3]: value, and derivatives along the lobe's x and y
-  std::vector<float> rows;  ///< [terms][padded_terms(3 lobes)]
+  std::vector<float> rows;  ///< [terms][boundary_columns(lobes)]
 };
+
+/// Three for each lobe, up to whole pairs of vectors.
+inline size_t boundary_columns(size_t lobes) { return (3 * lobes + 31) / 32 * 32 + 16; }
 
 /// Lights ready to shade the points of one transfer: prepared once per change of the lights.
 /// Immutable while shading, and may be shared between threads.

@@ -54,7 +54,6 @@ struct PreparedTransfer {
 inline size_t padded_terms(int terms) { return (static_cast<size_t>(terms) + 15) / 16 * 16; }
 
 /// Coefficients beyond the range of float16, 65504, make it float32.
-PreparedTransfer prepare_transfer(const Transfer& transfer,
-                                  RowFormat format = RowFormat::float16);
+PreparedTransfer prepare_transfer(const Transfer& transfer, RowFormat format = RowFormat::float16);
 
 }  // namespace burnish
