@@ -162,6 +162,55 @@ void measure_filter(const std::string& map, const Image& image,
     }
 }
 
+/// Lobes as a structure of arrays.
+struct LobeArrays {
+  std::vector<float> x[3], z[3], bandwidth_x, bandwidth_y;
+
+  void add(const AnisotropicGaussian<float>& lobe) {
+    for (int i = 0; i < 3; ++i) {
+      x[i].push_back(lobe.frame.x[i]);
+      z[i].push_back(lobe.frame.z[i]);
+    }
+    bandwidth_x.push_back(lobe.bandwidth_x);
+    bandwidth_y.push_back(lobe.bandwidth_y);
+  }
+  batch::AnisotropicGaussians spans() const {
+    return {{x[0], x[1], x[2]}, {z[0], z[1], z[2]}, bandwidth_x, bandwidth_y, {}};
+  }
+};
+
+/// Time of one of many lookups at once, and one by one, on this thread.
+void measure_lookups(const std::string& map, const PrefilteredEnvironment& filtered,
+                     const Options& options, std::vector<BenchRow>& rows) {
+  constexpr std::uint64_t kSeed = 20131107;
+  constexpr std::size_t kLobes = 1024;
+  constexpr double kBandwidth = 100;
+  for (const double anisotropy : {1.0, 4.0, 100.0}) {
+    std::mt19937_64 random(kSeed);
+    std::vector<AnisotropicGaussian<float>> lobes(kLobes);
+    LobeArrays arrays;
+    for (auto& lobe : lobes)
+      arrays.add(lobe = to_float(random_lobe(kBandwidth, anisotropy, random)));
+    std::vector<float> red(kLobes), green(kLobes), blue(kLobes);
+    for (const int taps : options.taps) {
+      const Timing batch = measure(options.bench, [&] {
+        batch::eval_prefiltered(filtered, arrays.spans(), taps, {red, green, blue});
+      });
+      const Timing single = measure(options.bench, [&] {
+        for (std::size_t i = 0; i < kLobes; ++i)
+          red[i] = eval_prefiltered(filtered, lobes[i], taps).x();
+      });
+      BenchRow row = {{"what", "lookup"}, {"map", name_of(map)}};
+      row["bandwidth"] = kBandwidth;
+      row["anisotropy"] = anisotropy;
+      row["taps"] = taps;
+      row["batch_ns"] = batch.median_s * 1e9 / kLobes;
+      row["single_ns"] = single.median_s * 1e9 / kLobes;
+      rows.push_back(row);
+    }
+  }
+}
+
 BenchRow measure_prefilter(const std::string& map, const Image& image, const Options& options,
                            PrefilteredEnvironment& filtered) {
   const Timing timing = measure(options.bench, [&] { filtered = prefilter_in_parallel(image); });
@@ -183,6 +232,7 @@ void run(const Options& options) {
     if (!options.lobes.empty()) measure_fits(map, image, options, rows);
     PrefilteredEnvironment filtered;
     rows.push_back(measure_prefilter(map, image, options, filtered));
+    measure_lookups(map, filtered, options, rows);
     if (options.directions > 0) measure_filter(map, image, filtered, options, rows);
   }
   report_bench("light", rows, options.bench, work);

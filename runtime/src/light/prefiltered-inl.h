@@ -9,7 +9,7 @@
 #define BURNISH_LIGHT_PREFILTERED_INL_H_
 #endif
 
-#include <hwy/contrib/math/math-inl.h>
+#include <hwy/contrib/math/math-inl.h>  // exp of double lanes
 #include <hwy/highway.h>
 
 #include "burnish/light/prefiltered_environment.h"
@@ -198,13 +198,52 @@ HWY_INLINE Vector3<V> rotated(D d, const Eigen::Matrix3f& m, const Vector3<V>& v
   return {row(0), row(1), row(2)};
 }
 
-/// Of a vector of points from `first` on. `weight_sum` of skipped ones stays 0.
+/// Looks up the rows of all lanes, the taps to both sides of the middle at once. Returns the sum of
+/// weights. `steps`: pairs of taps, 0 where nothing is wanted.
+template <class D, class V, class T>
+HWY_INLINE V sum_rows(D d, const PrefilteredEnvironment& environment, const LaneLevels<T>& levels,
+                      const TapRow<V>& row, const Vector3<V>& axis, const Vector3<V>& along,
+                      V steps, LaneSums<T>& sums) {
+  const V zero = hn::Zero(d), half = hn::Set(d, 0.5f), three = hn::Set(d, 3.0f);
+  const V pairs = half * row.taps;
+  // An odd row's first pair is one tap in the middle.
+  const V start = hn::IfThenZeroElse(hn::Lt(hn::Floor(pairs), pairs), half);
+  const T last = hn::GetLane(hn::MaxOfLanes(d, steps));
+  LaneTaps<T> taps;
+  V weight_sum = zero;
+  for (T step = 0; step < last; ++step) {
+    const V count = hn::Set(d, step), angle = row.spacing * (count + start);
+    const V s = sine(d, angle), c = sine(d, hn::Set(d, 1.57079633f) - angle);
+    // The Gaussian along the axis, and the share of its slab that lies inside the disc.
+    V weight = exp(d, hn::Neg(row.slope * s * s)) * c;
+    const V edge = row.narrow_root * c;
+    if (!hn::AllTrue(d, hn::Gt(edge, three)))
+      weight = weight * erf_of_positive(d, hn::Min(edge, three));
+    weight = hn::IfThenElseZero(hn::Lt(count, steps), weight);
+    const V other = hn::IfThenElseZero(hn::Gt(angle, zero), weight);
+    weight_sum = weight_sum + weight + other;
+    const Vector3<V> middle = {c * axis.x, c * axis.y, c * axis.z};
+    const Vector3<V> right = {hn::MulAdd(s, along.x, middle.x), hn::MulAdd(s, along.y, middle.y),
+                              hn::MulAdd(s, along.z, middle.z)};
+    place_tap(d, levels, right, weight, taps);
+    fetch_taps(environment, levels, taps, hn::Lanes(d), step == 0, sums);
+    if (hn::AllTrue(d, hn::Eq(other, zero))) continue;
+    const Vector3<V> left = {hn::NegMulAdd(s, along.x, middle.x),
+                             hn::NegMulAdd(s, along.y, middle.y),
+                             hn::NegMulAdd(s, along.z, middle.z)};
+    place_tap(d, levels, left, other, taps);
+    fetch_taps(environment, levels, taps, hn::Lanes(d), false, sums);
+  }
+  return weight_sum;
+}
+
+/// Of a vector of points, from `first` on.
 template <class D, class T>
 HWY_INLINE void eval_vector(D d, const PrefilteredEnvironment& environment, size_t first,
                             const BlockLobes<T>& lobes, hn::Mask<D> is_active, int max_taps,
                             BlockRgb<T>& result) {
   using V = hn::VFromD<D>;
-  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const auto load = [&](const BlockArray<T>& array)
                         HWY_ATTR { return hn::Load(d, array.data() + first); };
   const V bandwidth_x = load(lobes.bandwidth_x), bandwidth_y = load(lobes.bandwidth_y);
@@ -214,12 +253,10 @@ HWY_INLINE void eval_vector(D d, const PrefilteredEnvironment& environment, size
   const Vector3<V> z = {load(lobes.z.x), load(lobes.z.y), load(lobes.z.z)};
   const Vector3<V> axis = rotated(d, environment.environment_from_world, z);
   LaneSums<T> sums;
-  LaneTaps<T> taps;
-  const V steps = hn::IfThenElseZero(is_active, hn::Ceil(half * row.taps));
-  const V most_steps = hn::MaxOfLanes(d, steps);
   V weight_sum = hn::IfThenElseZero(is_active, one);
-  const auto is_single = hn::Eq(row.taps, one);
-  if (hn::AllTrue(d, hn::Or(is_single, hn::Not(is_active)))) {
+  const V steps = hn::IfThenElseZero(is_active, hn::Ceil(hn::Set(d, 0.5f) * row.taps));
+  if (hn::AllTrue(d, hn::Or(hn::Eq(row.taps, one), hn::Not(is_active)))) {
+    LaneTaps<T> taps;
     place_tap(d, levels, axis, weight_sum, taps);
     fetch_taps(environment, levels, taps, hn::Lanes(d), true, sums);
   } else {
@@ -229,33 +266,7 @@ HWY_INLINE void eval_vector(D d, const PrefilteredEnvironment& environment, size
                                   hn::IfThenElse(x_is_long, x.y, y.y),
                                   hn::IfThenElse(x_is_long, x.z, y.z)};
     const Vector3<V> along = rotated(d, environment.environment_from_world, long_axis);
-    weight_sum = zero;
-    const V halves = half * row.taps;
-    const V start = hn::IfThenZeroElse(hn::Lt(hn::Floor(halves), halves), half);  // odd: 0
-    const auto last = hn::GetLane(most_steps);
-    for (T step = 0; step < last; ++step) {
-      const V count = hn::Set(d, step), angle = row.spacing * (count + start);
-      const V s = sine(d, angle), c = sine(d, hn::Set(d, 1.57079633f) - angle);
-      // The Gaussian along the axis, and the share of its slab that lies inside the disc.
-      V weight = exp(d, hn::Neg(row.slope * s * s)) * c;
-      const V edge = row.narrow_root * c, three = hn::Set(d, 3.0f);
-      if (!hn::AllTrue(d, hn::Gt(edge, three)))
-        weight = weight * erf_of_positive(d, hn::Min(edge, three));
-      weight = hn::IfThenElseZero(hn::Lt(count, steps), weight);
-      const V other = hn::IfThenElseZero(hn::Gt(angle, zero), weight);
-      weight_sum = weight_sum + weight + other;
-      const Vector3<V> middle = {c * axis.x, c * axis.y, c * axis.z};
-      place_tap(d, levels,
-                {hn::MulAdd(s, along.x, middle.x), hn::MulAdd(s, along.y, middle.y),
-                 hn::MulAdd(s, along.z, middle.z)},
-                weight, taps);
-      fetch_taps(environment, levels, taps, hn::Lanes(d), step == 0, sums);
-      place_tap(d, levels,
-                {hn::NegMulAdd(s, along.x, middle.x), hn::NegMulAdd(s, along.y, middle.y),
-                 hn::NegMulAdd(s, along.z, middle.z)},
-                other, taps);
-      fetch_taps(environment, levels, taps, hn::Lanes(d), false, sums);
-    }
+    weight_sum = sum_rows(d, environment, levels, row, axis, along, steps, sums);
   }
   const V inverse = one / hn::Max(weight_sum, hn::Set(d, 1e-30f));
   V reference[4], sum[4];

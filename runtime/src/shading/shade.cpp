@@ -58,6 +58,19 @@ Vector3f valid_normal(const Vector3f& normal) {
   return std::abs(square - 1) < 1e-5f ? normal : Vector3f(normal / std::sqrt(square));
 }
 
+constexpr size_t kTogether = 16 * kBlock;  ///< vertices that are grouped
+
+/// Stable, in a pass over the indices, of which there are at most kTogether.
+template <class Key>
+void sort_by(std::span<size_t> index, const Key& key) {
+  std::array<std::uint16_t, 257> start = {};
+  for (const size_t i : index) ++start[key(i) + 1u];
+  for (size_t k = 1; k < start.size(); ++k) start[k] = start[k] + start[k - 1];
+  std::array<size_t, kTogether> sorted;
+  for (const size_t i : index) sorted[start[key(i)]++] = i;
+  std::copy_n(sorted.begin(), index.size(), index.begin());
+}
+
 /// Shades the vertices first + index[..] of one material.
 void shade_group(const PreparedTransfer& transfer, const Lighting& lighting,
                  const PreparedMaterial& material, const Vector3f& eye,
@@ -128,23 +141,26 @@ void shade_vertices(const PreparedTransfer& transfer, const Lighting& lighting,
                     std::span<const PreparedMaterial> materials,
                     std::span<const std::uint8_t> material_id, const Vector3f& eye,
                     const ShadingOptions& options, size_t first, std::span<Rgb> radiance) noexcept {
-  // A few blocks' vertices at a time, grouped by material.
-  constexpr size_t kTogether = 8 * kBlock;
+  // Some blocks' vertices at a time, grouped by material, and those by basis: a block reads what
+  // it shares once.
   size_t index[kTogether];
   for (size_t start = 0; start < radiance.size(); start += kTogether) {
-    const size_t end = std::min(start + kTogether, radiance.size());
+    const size_t count = std::min(kTogether, radiance.size() - start);
     const auto material_of = [&](size_t i) -> size_t {
       return material_id.empty() ? 0 : material_id[first + i];
     };
-    std::array<bool, 256> done = {};
-    for (size_t i = start; i < end; ++i) {
-      const size_t id = material_of(i);
-      if (done[id]) continue;
-      done[id] = true;
-      size_t count = 0;
-      for (size_t j = i; j < end; ++j)
-        if (material_of(j) == id) index[count++] = j;
-      shade_group(transfer, lighting, materials[id], eye, options, first, {index, count}, radiance);
+    for (size_t i = 0; i < count; ++i) index[i] = start + i;
+    if (transfer.bases.size() > 1)
+      sort_by({index, count}, [&](size_t i) { return transfer.basis_id[first + i]; });
+    if (!material_id.empty())
+      sort_by({index, count}, [&](size_t i) { return material_id[first + i]; });
+    for (size_t done = 0; done < count;) {
+      const size_t id = material_of(index[done]);
+      size_t end = done;
+      while (end < count && material_of(index[end]) == id) ++end;
+      shade_group(transfer, lighting, materials[id], eye, options, first,
+                  {index + done, end - done}, radiance);
+      done = end;
     }
   }
 }
