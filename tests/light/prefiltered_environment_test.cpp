@@ -141,7 +141,7 @@ TEST(PrefilteredEnvironment, MoreTapsErrLess) {
   const double all = rms_error(environment, 60, 16, 14, seed);
   EXPECT_LT(six, two / 2);
   EXPECT_LT(all, four / 4);
-  // 0.6 + 2.9 sqrt(15) taps are all that are asked for.
+  // 0.9 + 3 sqrt(15) taps are all that are asked for.
   EXPECT_EQ(rms_error(environment, 60, 16, 64, seed), all);
 }
 

@@ -89,8 +89,9 @@ HWY_INLINE TapRow<V> plan_taps(D d, V bandwidth_x, V bandwidth_y, int max_taps) 
   if (max_taps <= 1) return row;
   const V ratio = hn::Min(narrow / wide, hn::Set(d, 1e15f)), root = hn::Sqrt(ratio);
   const V wanted = hn::Ceil(
-      hn::MulAdd(hn::Set(d, 2.9f), hn::Sqrt(hn::Max(ratio - one, zero)), hn::Set(d, 0.6f)));
-  row.taps = hn::Min(wanted, hn::Set(d, static_cast<hn::TFromD<D>>(max_taps)));
+      hn::MulAdd(hn::Set(d, 3.0f), hn::Sqrt(hn::Max(ratio - one, zero)), hn::Set(d, 0.9f)));
+  const V most = hn::Set(d, static_cast<hn::TFromD<D>>(max_taps));
+  row.taps = hn::IfThenElse(hn::Lt(ratio, hn::Set(d, 1.03f)), one, hn::Min(wanted, most));
   const auto is_single = hn::Lt(row.taps, hn::Set(d, 1.5f));
   if (hn::AllTrue(d, is_single)) return row;
   const V lack = root / row.taps;

@@ -42,7 +42,7 @@ PrefilteredEnvironment prefilter_environment(const Image& environment,
                                              const PrefilterOptions& options = {});
 
 /// Mean radiance of the environment under a lobe: (integral of lobe * L) / (integral of lobe), at
-/// least 0. An anisotropic lobe is a row of round taps along its long axis: 0.6 + 2.9 sqrt(r - 1)
+/// least 0. An anisotropic lobe is a row of round taps along its long axis: 0.9 + 3 sqrt(r - 1)
 /// of them, rounded up, for a ratio r of the bandwidths, but at most `max_taps`; fewer are wider.
 /// 1 tap: the round lobe of the same area. A constant environment gives exactly that constant, to
 /// the bit. Errors: docs/lights.md, "Filtered maps".
