@@ -12,15 +12,21 @@ enum class CosineModel {
   horizon_normalised,  ///< unshadowed cosine integral times visible fraction over horizon fraction
 };
 
-/// Speed for accuracy. The defaults are ours; VisibilityModel::hemisphere, CosineModel::constant
-/// and one tap of SpecularForm::peak are the paper's method.
+/// Speed for accuracy: what each costs and buys is measured in docs/runtime.md. The defaults are
+/// Quality::balanced; VisibilityModel::hemisphere, CosineModel::constant, no ladder and one tap of
+/// SpecularForm::peak are the paper's method.
 struct ShadingOptions {
+  /// `directional` costs what `hemisphere` costs, and errs by half; `cap` is for comparison.
   VisibilityModel visibility = VisibilityModel::directional;
+  /// `constant` saves half of a narrow lobe's time, and errs by 3 to 30 %.
   CosineModel cosine = CosineModel::horizon_normalised;
-  AsgIntegral integral = AsgIntegral::exact;
-  int terms = 0;                  ///< PCA terms used, 1..baked; 0: all that were baked
+  AsgIntegral integral = AsgIntegral::exact;  ///< of lights and of the paper's form of highlights
+  /// PCA terms used, 1..baked; 0: all that were baked. Lookups cost in proportion.
+  int terms = 0;
   SpecularOptions specular = {};  ///< how materials are prepared: see prepare_material
-  int environment_taps = 32;      ///< at most, along the long axis of a specular lobe, 1..64
+  /// Lookups of the environment along the long axis of a specular lobe, at most, 1..64: each costs
+  /// 15 ns. Odd counts are best.
+  int environment_taps = 5;
   /// The horizon-normalised diffuse term of lobes wider than the transfer's crossover sees through
   /// the visibility ladder, where one was baked. False: through the SSDF, as the papers do.
   bool ladder = true;
@@ -29,5 +35,14 @@ struct ShadingOptions {
   /// accuracy where there is no ladder (docs/lights.md, "Lobe width").
   float split_bandwidth = 0;
 };
+
+/// Points on the trade of speed for accuracy (docs/runtime.md).
+enum class Quality {
+  fast,      ///< highlights of one lobe each, as the paper's, that see the environment three times
+  balanced,  ///< the defaults
+  accurate,  ///< lobes cut into nine, as many lookups as they are long
+};
+
+ShadingOptions shading_options(Quality quality);
 
 }  // namespace burnish

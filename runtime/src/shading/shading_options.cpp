@@ -1,0 +1,22 @@
+#include "burnish/shading/shading_options.h"
+
+namespace burnish {
+
+ShadingOptions shading_options(Quality quality) {
+  ShadingOptions options;
+  switch (quality) {
+    case Quality::fast:
+      options.specular = {SpecularForm::peak, 1, 1};
+      options.environment_taps = 3;
+      break;
+    case Quality::balanced:
+      break;
+    case Quality::accurate:
+      options.specular = {SpecularForm::moments, kMaxTaps, kTailLobes};
+      options.environment_taps = 32;
+      break;
+  }
+  return options;
+}
+
+}  // namespace burnish
