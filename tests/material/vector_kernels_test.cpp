@@ -2,7 +2,10 @@
 
 #include "material/vector_kernels.h"
 
+#include <cmath>
+#include <limits>
 #include <random>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -177,6 +180,63 @@ TEST_P(MaterialVectors, ASliceDoesNotDependOnItsNeighbours) {
       }
     }
   EXPECT_GT(seen, 10000u);  // the loop has not been empty
+}
+
+/// Along the axes, just above and below the horizon, and what is no direction at all.
+BlockVector3<float> extreme_views(std::mt19937& random) {
+  constexpr float kDenormal = std::numeric_limits<float>::denorm_min(), kSmall = 1e-20f;
+  const std::vector<Vector3f> views = {{0, 0, 1},
+                                       {0, 0, -1},
+                                       {1, 0, 0},
+                                       {0, 1, 0},
+                                       {-1, 0, kDenormal},
+                                       {0, -1, kSmall},
+                                       {1, 0, -kSmall},
+                                       {0, 0, 0},
+                                       {1e-7f, 0, 1},
+                                       {1e-7f, 1e-7f, 1},
+                                       {0.6f, 0, 0.8f},
+                                       {0, 0.6f, 0.8f},
+                                       {0.6f, -0.8f, 1e-7f},
+                                       {0.8f, 0.6f, 1e-3f}};
+  BlockVector3<float> block = random_block(random);
+  for (size_t k = 0; k < views.size(); ++k) set(block, k, views[k]);
+  return block;
+}
+
+/// What is wrong with a slice's lobes, or nothing.
+std::string slice_error(const SliceBlock<float>& slice, const BlockVector3<float>& outgoing) {
+  for (size_t k = 0; k < kBlock; ++k) {
+    const Vector3f x = at(slice.lobes.x, k), z = at(slice.lobes.z, k);
+    const Vector3f sizes(slice.lobes.bandwidth_x[k], slice.lobes.bandwidth_y[k], slice.integral[k]);
+    const Rgb weight(slice.weight[0][k], slice.weight[1][k], slice.weight[2][k]);
+    const bool is_frame = std::abs(x.norm() - 1) < 1e-5f && std::abs(z.norm() - 1) < 1e-5f &&
+                          std::abs(x.dot(z)) < 1e-5f;
+    const bool is_valid = is_frame && sizes.allFinite() && sizes.minCoeff() > 0 &&
+                          weight.allFinite() && weight.minCoeff() >= 0 &&
+                          (outgoing.z[k] > 0 || weight.maxCoeff() == 0);
+    if (is_valid) continue;
+    std::ostringstream text;
+    text << "view " << at(outgoing, k).transpose() << ": x " << x.transpose() << ", z "
+         << z.transpose() << ", bandwidths and integral " << sizes.transpose() << ", weight "
+         << weight.transpose();
+    return text.str();
+  }
+  return {};
+}
+
+TEST_P(MaterialVectors, LobesAreValidWhateverTheView) {
+  for (const NamedMaterial& sample : varied_materials())
+    for (const SpecularForm form : {SpecularForm::peak, SpecularForm::moments})
+      for (const int taps : {1, 5, 9}) {
+        const PreparedMaterial prepared = prepare_material(sample.material, {form, taps, 3});
+        const BlockVector3<float> outgoing = extreme_views(random_);
+        for (int tooth = 0; tooth < prepared.count; ++tooth) {
+          SliceBlock<float> slice;
+          slice_in_float(prepared, tooth, outgoing, slice);
+          ASSERT_EQ(slice_error(slice, outgoing), "") << sample.name << ", seed " << kSeed;
+        }
+      }
 }
 
 /// What a lobe weighs, over what all of them do, in float and in double.

@@ -326,10 +326,13 @@ HWY_INLINE void take_peak(D d, const BlockVector3<T>& outgoing, ToothBlock<D>& b
                           SliceBlock<T>& result) {
   using V = hn::VFromD<D>;
   const V bandwidth_x = hn::Set(d, block.tooth.lobe.bandwidth_x);
-  const V bandwidth_y = hn::Set(d, block.tooth.lobe.bandwidth_y);
+  const V bandwidth_y = hn::Set(d, block.tooth.lobe.bandwidth_y), least = hn::Set(d, 1e-6f);
   for (size_t v = 0; v < block.vectors; ++v) {
-    const WarpedLobe<V> lobe =
+    WarpedLobe<V> lobe =
         warp_to_incoming(d, block.frame, bandwidth_x, bandwidth_y, block.seen[v].outgoing);
+    // D of the roughest materials is flat in the middle.
+    lobe.bandwidth_x = hn::Max(lobe.bandwidth_x, least);
+    lobe.bandwidth_y = hn::Max(lobe.bandwidth_y, least);
     SliceNodes<V>& nodes = block.nodes[v];
     nodes.count = 1;
     nodes.incoming[0] = lobe.z;
@@ -348,7 +351,7 @@ HWY_INLINE void take_peak(D d, const BlockVector3<T>& outgoing, ToothBlock<D>& b
 
 /// One tooth of a material that has_specular(), seen from `count` points, 1..kBlock: `outgoing`
 /// unit, in the local frame. `numbers` are the material's. Lanes up to the next whole vector are
-/// valid, and so they are in the result. Weight 0 where there is nothing.
+/// valid, and so they are in the result. Weight 0 where there is nothing. Bandwidths are above 0.
 ///
 /// It goes through the block step by step: as one, most of the time the processor would wait for a
 /// chain of divisions and roots.
