@@ -205,7 +205,8 @@ template <class D, class V, class T>
 HWY_INLINE V sum_rows(D d, const PrefilteredEnvironment& environment, const LaneLevels<T>& levels,
                       const TapRow<V>& row, const Vector3<V>& axis, const Vector3<V>& along,
                       V steps, LaneSums<T>& sums) {
-  const V zero = hn::Zero(d), half = hn::Set(d, 0.5f), three = hn::Set(d, 3.0f);
+  const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
+  const V three = hn::Set(d, 3.0f);
   const V pairs = half * row.taps;
   // An odd row's first pair is one tap in the middle.
   const V start = hn::IfThenZeroElse(hn::Lt(hn::Floor(pairs), pairs), half);
@@ -214,12 +215,15 @@ HWY_INLINE V sum_rows(D d, const PrefilteredEnvironment& environment, const Lane
   V weight_sum = zero;
   for (T step = 0; step < last; ++step) {
     const V count = hn::Set(d, step), angle = row.spacing * (count + start);
-    const V s = sine(d, angle), c = sine(d, hn::Set(d, 1.57079633f) - angle);
+    const V s = sine(d, angle);
+    const V c = hn::IfThenElse(hn::Eq(angle, zero), one, sine(d, hn::Set(d, 1.57079633f) - angle));
     // The Gaussian along the axis, and the share of its slab that lies inside the disc.
     V weight = exp(d, hn::Neg(row.slope * s * s)) * c;
     const V edge = row.narrow_root * c;
-    if (!hn::AllTrue(d, hn::Gt(edge, three)))
-      weight = weight * erf_of_positive(d, hn::Min(edge, three));
+    // By lane, so that what a point sees is the same to the bit whoever its neighbours are.
+    const auto is_whole = hn::Or(hn::Eq(row.taps, one), hn::Gt(edge, three));
+    if (!hn::AllTrue(d, is_whole))
+      weight = weight * hn::IfThenElse(is_whole, one, erf_of_positive(d, hn::Min(edge, three)));
     weight = hn::IfThenElseZero(hn::Lt(count, steps), weight);
     const V other = hn::IfThenElseZero(hn::Gt(angle, zero), weight);
     weight_sum = weight_sum + weight + other;

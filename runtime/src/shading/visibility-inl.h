@@ -317,9 +317,13 @@ HWY_INLINE V directional_bandwidth(D d, const DirectionalShape<V>& shape, V x, V
 template <class D, class V>
 HWY_INLINE V fraction_past(D d, V bandwidth, V sine) {
   const V half = hn::Set(d, 0.5f), far = root(d, bandwidth);
-  const V seen = hn::CopySign(erf_of_positive(d, hn::Mul(far, hn::Abs(sine))), sine);
-  if (hn::AllTrue(d, hn::Gt(far, hn::Set(d, 4.0f)))) return hn::MulAdd(half, seen, half);
-  return hn::MulAdd(hn::Mul(half, seen), reciprocal(d, erf_of_positive(d, far)), half);
+  const V seen = hn::Mul(half, hn::CopySign(erf_of_positive(d, hn::Mul(far, hn::Abs(sine))), sine));
+  const auto is_narrow = hn::Gt(far, hn::Set(d, 4.0f));
+  if (hn::AllTrue(d, is_narrow)) return hn::Add(seen, half);
+  // By lane, so that what a point sees is the same to the bit whoever its neighbours are.
+  const V scale =
+      hn::IfThenElse(is_narrow, hn::Set(d, 1.0f), reciprocal(d, erf_of_positive(d, far)));
+  return hn::MulAdd(seen, scale, half);
 }
 
 /// visible_fraction of a lobe past a boundary, by the models of the papers.
