@@ -33,7 +33,9 @@ LightAtPoint light_of_cap(const Vector3f& axis, float height, float cosine, cons
   light.lobe.frame = frame_from_axis(axis);
   const float sharpness = sharpness_from_mean(resultant_from_complement(height / 2));
   light.lobe.bandwidth_x = light.lobe.bandwidth_y = std::min(sharpness / 2, kMaxBandwidth);
-  set_energy(light, radiance, 2 * kPi<float> * height, cap_cosine_integral(height, cosine));
+  // Of more than a hemisphere it is a difference.
+  const float irradiance = std::max(cap_cosine_integral(height, cosine), 0.0f);
+  set_energy(light, radiance, 2 * kPi<float> * height, irradiance);
   return light;
 }
 
