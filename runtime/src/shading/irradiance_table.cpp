@@ -189,7 +189,11 @@ void make_irradiance_tables(const PreparedTransfer& transfer, PreparedLights& li
   const Eigen::Map<const RowMajor> harmonics(grid.harmonics.data(), kLadderDirections,
                                              kGridHarmonics);
   const RowMajor light = radiance * harmonics * HarmonicGrid::kSolidAngle;
-  const RowMajor unshadowed = convolve(light, cosine_factors());
+  RowMajor unshadowed = convolve(light, cosine_factors());
+  // Below the horizon the harmonics ring about zero, which is all that light sends there.
+  for (int channel = 0; channel < 3; ++channel)
+    if ((radiance.row(channel).array() >= 0).all())
+      unshadowed.col(channel) = unshadowed.col(channel).cwiseMax(0.0f);
   lights.tables.resize(transfer.ladders.size());
   for (size_t i = 0; i < transfer.ladders.size(); ++i)
     fill(transfer.ladders[i], radiance, unshadowed, light, lights.tables[i]);
