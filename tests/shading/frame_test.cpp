@@ -81,9 +81,10 @@ TEST(Frame, AllInstructionSetsAgree) {
         double most = 0;
         for (size_t i = 0; i < kVertices; ++i)
           most = std::max(most, double((radiance[i] - first[i]).abs().maxCoeff()));
-        // Sums in another order, products with and without a rounding between: of lobes of
-        // bandwidths up to 300, whose exponents are good to 1e-5.
-        EXPECT_LT(most, 1e-4 * mean_of(first)) << name << ", map " << with_map;
+        // Sums in another order, products with and without a rounding between, estimates of
+        // reciprocals: of lobes of bandwidths up to 300, whose exponents are good to 1e-5, seen
+        // through random coefficients, whose slopes are ten times those of real ones.
+        EXPECT_LT(most, 3e-4 * mean_of(first)) << name << ", map " << with_map;
       }
       EXPECT_GT(mean_of(first), 0.05);
     }

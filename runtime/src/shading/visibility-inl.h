@@ -323,7 +323,7 @@ HWY_INLINE V fraction_past(D d, V bandwidth, V sine) {
   // By lane, so that what a point sees is the same to the bit whoever its neighbours are.
   const V scale =
       hn::IfThenElse(is_narrow, hn::Set(d, 1.0f), reciprocal(d, erf_of_positive(d, far)));
-  return hn::MulAdd(seen, scale, half);
+  return hn::Max(hn::MulAdd(seen, scale, half), hn::Zero(d));
 }
 
 /// visible_fraction of a lobe past a boundary, by the models of the papers.
