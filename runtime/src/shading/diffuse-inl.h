@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "burnish/shading/prepared_lights.h"
+#include "shading/multiply_rows-inl.h"
 #include "shading/visibility-inl.h"
 #include "sphere/warp-inl.h"
 
@@ -22,14 +23,15 @@ HWY_INLINE Vector3<hn::VFromD<D>> set(D d, const Vector3f& v) {
   return {hn::Set(d, v.x()), hn::Set(d, v.y()), hn::Set(d, v.z())};
 }
 
+/// Of the least-squares SG of the clamped cosine (wang2009svbrdf).
+inline constexpr float kCosineSharpness = 2.133f;
+
 /// Where the product of a lobe and the clamped cosine peaks, and how wide it is there, in the
 /// lobe's frame, for a normal in that frame. The cosine is exp(kCosineSharpness n.v) up to a
 /// factor.
 template <class D, class V>
 HWY_INLINE AnisotropicGaussian<V> lobe_times_cosine(D d, V bandwidth_x, V bandwidth_y,
                                                     const Vector3<V>& normal) {
-  constexpr float kCosineSharpness = 2.133f;  // least-squares SG of the clamped cosine
-                                              // (wang2009svbrdf)
   const V one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), half = hn::Set(d, 0.5f);
   const V scale = hn::Set(d, kCosineSharpness);
   const Vector3<V> n = {hn::Mul(scale, normal.x), hn::Mul(scale, normal.y),
@@ -135,6 +137,32 @@ HWY_INLINE void cell_triangle(int x, int y, T fraction_x, T fraction_y, size_t (
   weight[2] = outer ? 1 - fx : fy;
 }
 
+/// The same of a lobe so narrow that one step reaches its peak, and that the cosine does not turn
+/// its axes: within .1 of a deviation for bandwidths from kNarrow on. The axes are tangent to the
+/// sphere to first order.
+inline constexpr float kNarrow = 8;
+
+template <class D, class V>
+HWY_INLINE AnisotropicGaussian<V> narrow_lobe_times_cosine(D d, V bandwidth_x, V bandwidth_y,
+                                                           const Vector3<V>& normal) {
+  const V one = hn::Set(d, 1.0f), two = hn::Set(d, 2.0f), half = hn::Set(d, 0.5f);
+  const V scale = hn::Set(d, kCosineSharpness);
+  const V multiplier = hn::Max(hn::MulAdd(scale, normal.z, one), hn::Set(d, 0.4f));
+  const V x =
+      hn::Mul(hn::Mul(scale, normal.x), reciprocal(d, hn::MulAdd(two, bandwidth_x, multiplier)));
+  const V y =
+      hn::Mul(hn::Mul(scale, normal.y), reciprocal(d, hn::MulAdd(two, bandwidth_y, multiplier)));
+  const V inverse = reciprocal_root(d, hn::MulAdd(x, x, hn::MulAdd(y, y, one)));
+  const Vector3<V> v = {hn::Mul(x, inverse), hn::Mul(y, inverse), inverse};
+  // The multiplier is the cosine's curvature and 1, which the ASG's smooth term accounts for.
+  const V more = hn::Mul(half, hn::Sub(multiplier, one));
+  return {{one, hn::Zero(d), hn::Neg(x)},
+          {hn::Zero(d), one, hn::Neg(y)},
+          v,
+          hn::Add(bandwidth_x, more),
+          hn::Add(bandwidth_y, more)};
+}
+
 /// All wide lobes at once, through the ladder.
 template <class D, class T = hn::TFromD<D>>
 HWY_NOINLINE void add_table_irradiance(D d, const PreparedTransfer& transfer,
@@ -180,32 +208,6 @@ HWY_NOINLINE void add_table_irradiance(D d, const PreparedTransfer& transfer,
 }
 
 inline constexpr size_t kLobesTogether = 16;
-
-/// Products of four rows of coefficients with a matrix of [terms][width], a vector of columns at a
-/// time: sums[row][column].
-template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void multiply_rows(D d, const T* const (&rows)[4], size_t terms, const float* matrix,
-                              size_t width, size_t columns, T* const (&sums)[4]) {
-  using V = hn::VFromD<D>;
-  const size_t lanes = hn::Lanes(d);
-  for (size_t j = 0; j < columns; j += 2 * lanes) {
-    V left[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    V right[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-    for (size_t k = 0; k < terms; ++k) {
-      const V a = load_floats(d, matrix + k * width + j);
-      const V b = load_floats(d, matrix + k * width + j + lanes);
-      for (int r = 0; r < 4; ++r) {
-        const V coefficient = hn::Set(d, rows[r][k]);
-        left[r] = hn::MulAdd(coefficient, a, left[r]);
-        right[r] = hn::MulAdd(coefficient, b, right[r]);
-      }
-    }
-    for (int r = 0; r < 4; ++r) {
-      hn::Store(left[r], d, sums[r] + j);
-      hn::Store(right[r], d, sums[r] + j + lanes);
-    }
-  }
-}
 
 /// The narrow lobes' boundaries at their axes: value and gradient, [3 lobes][kBlock], from the
 /// matrix product; a few lobes at a time. Four rows of a basis at once share what is read of it.
@@ -288,6 +290,7 @@ HWY_NOINLINE void add_lobe_irradiance(D d, const PreparedLobe& light, float ampl
       hn::Set(d, light.lobe.bandwidth_x), hn::Set(d, light.lobe.bandwidth_y)};
   const LobeMoments<V> moments = set(d, light.moments);
   const V integral = hn::Set(d, light.integral * (1 - light.ladder_share));
+  const bool is_narrow = std::min(light.lobe.bandwidth_x, light.lobe.bandwidth_y) >= kNarrow;
   for (size_t i = 0; i < block.count; i += hn::Lanes(d)) {
     const Vector3<V> world_normal = load(d, block.normal, i);
     const Vector3<V> normal = {dot(world_normal, lobe.x), dot(world_normal, lobe.y),
@@ -314,7 +317,8 @@ HWY_NOINLINE void add_lobe_irradiance(D d, const PreparedLobe& light, float ampl
       if (hn::AllTrue(d, hn::Le(amount, hn::Zero(d)))) continue;
       if (boundary) {
         const AnisotropicGaussian<V> lit =
-            lobe_times_cosine(d, lobe.bandwidth_x, lobe.bandwidth_y, normal);
+            is_narrow ? narrow_lobe_times_cosine(d, lobe.bandwidth_x, lobe.bandwidth_y, normal)
+                      : lobe_times_cosine(d, lobe.bandwidth_x, lobe.bandwidth_y, normal);
         const Boundary<V> at_lit =
             boundary_at(d, at_axis.sine, at_axis.gradient.x, at_axis.gradient.y, lit.z);
         amount = hn::Mul(amount, visible_share(d, options.visibility, lit, at_lit, normal));

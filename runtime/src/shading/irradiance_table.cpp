@@ -6,6 +6,7 @@
 
 #include "burnish/sphere/batch.h"
 #include "burnish/sphere/gauss_legendre.h"
+#include "shading/dense_product.h"
 #include "visibility/harmonic_grid.h"
 
 // The irradiance of a light L through a visibility V is the product L V, convolved with the clamped
@@ -62,7 +63,7 @@ const Degrees& cosine_factors() {
 }
 
 /// Of a bare horizon times the cosine, both as far as the table knows them.
-Degrees open_factors(int bands) {
+Degrees find_open_factors(int bands) {
   const Degrees half_space = zonal_factors(0, [](double) { return 1; });
   return zonal_factors(-1, [&](double t) {
     double horizon = 0, cosine = 0;
@@ -82,6 +83,15 @@ Vector3f normal_of(int corner) {
   if (z >= 0) return Vector3f(x, y, z).normalized();
   return Vector3f(std::copysign(1 - std::abs(y), x), std::copysign(1 - std::abs(x), y), z)
       .normalized();
+}
+
+const Degrees& open_factors(int bands) {
+  static const auto factors = [] {
+    std::array<Degrees, kMaxLadderBands + 1> all;
+    for (int n = 0; n <= kMaxLadderBands; ++n) all[n] = find_open_factors(n);
+    return all;
+  }();
+  return factors[static_cast<size_t>(std::min(bands, kMaxLadderBands))];
 }
 
 /// The harmonics of the directions of the table's normals: [kNormals][kGridHarmonics].
@@ -140,36 +150,51 @@ void add_radiance(const PreparedLobe& light, Rows radiance, std::span<float> val
     radiance.row(channel) += scale * light.color[channel] * shape;
 }
 
-/// Convolves radiance of harmonics `light` [3][kGridHarmonics] with a zonal function:
-/// [kNormals][3].
-RowMajor convolve(const RowMajor& light, const Degrees& factors) {
-  RowMajor scaled = light;
-  for (int l = 0; l < kMaxLadderBands; ++l) scaled.middleCols(l * l, 2 * l + 1) *= factors[l];
-  return normal_harmonics() * scaled.transpose();
+/// left right, the right one's rows being of panel_width(columns).
+RowMajor multiply(const RowMajor& left, const float* right, size_t columns) {
+  RowMajor result(left.rows(), static_cast<Eigen::Index>(panel_width(columns)));
+  dense_product(left.data(), static_cast<size_t>(left.rows()), static_cast<size_t>(left.cols()),
+                right, columns, result.data());
+  return result;
 }
 
-void fill(const PreparedTransfer::Ladder& ladder, const Rows& radiance, const RowMajor& unshadowed,
-          const RowMajor& light, IrradianceTable& table) {
+/// Convolves radiance of harmonics `light` [3][kGridHarmonics] with zonal functions: [kNormals][3]
+/// of the first, then of the second.
+RowMajor convolve(const RowMajor& light, const Degrees& first, const Degrees& second) {
+  RowMajor scaled = RowMajor::Zero(kGridHarmonics, kPanel);
+  for (int l = 0; l < kMaxLadderBands; ++l) {
+    const auto band = light.leftCols(kGridHarmonics).middleCols(l * l, 2 * l + 1).transpose();
+    scaled.block(l * l, 0, 2 * l + 1, 3) = first[l] * band;
+    scaled.block(l * l, 3, 2 * l + 1, 3) = second[l] * band;
+  }
+  return multiply(normal_harmonics(), scaled.data(), 6);
+}
+
+void fill(const PreparedTransfer::Ladder& ladder, const Rows& radiance, const RowMajor& light,
+          IrradianceTable& table) {
   const int terms = ladder.harmonics.terms;
+  const size_t columns = static_cast<size_t>(1 + terms);
   table.terms = terms;
   const Eigen::Index size = static_cast<Eigen::Index>(table.entry_size());
   table.entries.assign(static_cast<size_t>(kNormals * size), 0.0f);
   Rows entries(table.entries.data(), kNormals, size);
-  const Eigen::Map<const RowMajor> images(ladder.images.data(), kLadderDirections, 1 + terms);
+  // What a bare horizon lacks is added, so that all is exact where nothing occludes.
+  const RowMajor open = convolve(light, cosine_factors(), open_factors(ladder.harmonics.bands));
   RowMajor weighted(kCosineHarmonics, kLadderDirections);
   for (int channel = 0; channel < 3; ++channel) {
     weighted.array() = cosine_harmonics().grid.array().rowwise() * radiance.row(channel).array();
-    const RowMajor product = weighted * images;
-    const RowMajor values = cosine_harmonics().normals * product;
-    entries.col(IrradianceTable::kMean + channel) = values.col(0);
+    const RowMajor product = multiply(weighted, ladder.images.data(), columns);
+    const RowMajor values = multiply(cosine_harmonics().normals, product.data(), columns);
+    entries.col(IrradianceTable::kMean + channel) =
+        values.col(terms) + open.col(channel) - open.col(3 + channel);
     entries.middleCols(
         IrradianceTable::kTerms + channel * static_cast<Eigen::Index>(padded_terms(terms)), terms) =
-        values.rightCols(terms);
+        values.leftCols(terms);
+    // Below the horizon the harmonics ring about zero, which is all that light sends there.
+    auto unshadowed = entries.col(IrradianceTable::kUnshadowed + channel);
+    unshadowed = open.col(channel);
+    if ((radiance.row(channel).array() >= 0).all()) unshadowed = unshadowed.cwiseMax(0.0f);
   }
-  // What a bare horizon would lack, so that all is exact where nothing occludes.
-  entries.middleCols(IrradianceTable::kMean, 3) +=
-      unshadowed - convolve(light, open_factors(ladder.harmonics.bands));
-  entries.middleCols(IrradianceTable::kUnshadowed, 3) = unshadowed;
 }
 
 }  // namespace
@@ -186,17 +211,11 @@ void make_irradiance_tables(const PreparedTransfer& transfer, PreparedLights& li
       add_radiance(light, radiance,
                    std::span(lights.scratch).subspan(3 * kLadderDirections, kLadderDirections));
   const HarmonicGrid& grid = harmonic_grid();
-  const Eigen::Map<const RowMajor> harmonics(grid.harmonics.data(), kLadderDirections,
-                                             kGridHarmonics);
-  const RowMajor light = radiance * harmonics * HarmonicGrid::kSolidAngle;
-  RowMajor unshadowed = convolve(light, cosine_factors());
-  // Below the horizon the harmonics ring about zero, which is all that light sends there.
-  for (int channel = 0; channel < 3; ++channel)
-    if ((radiance.row(channel).array() >= 0).all())
-      unshadowed.col(channel) = unshadowed.col(channel).cwiseMax(0.0f);
+  const RowMajor light =
+      multiply(radiance, grid.harmonics.data(), kGridHarmonics) * HarmonicGrid::kSolidAngle;
   lights.tables.resize(transfer.ladders.size());
   for (size_t i = 0; i < transfer.ladders.size(); ++i)
-    fill(transfer.ladders[i], radiance, unshadowed, light, lights.tables[i]);
+    fill(transfer.ladders[i], radiance, light, lights.tables[i]);
 }
 
 }  // namespace burnish

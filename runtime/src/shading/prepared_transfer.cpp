@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shading/dense_product.h"
 #include "visibility/harmonic_grid.h"
 
 namespace burnish {
@@ -29,10 +30,12 @@ PreparedTransfer::Ladder draw(const LadderBasis& basis) {
   const Eigen::Map<const RowMajor> eigen(basis.eigen.data(), count, terms);
   const Eigen::Map<const Eigen::VectorXf> mean(basis.mean.data(), count);
   PreparedTransfer::Ladder ladder;
-  ladder.images.resize(kLadderDirections * static_cast<size_t>(1 + terms));
-  Eigen::Map<RowMajor> images(ladder.images.data(), kLadderDirections, 1 + terms);
-  images.col(0) = harmonics * mean;
-  images.rightCols(terms) = harmonics * eigen;
+  const size_t width = panel_width(static_cast<size_t>(1 + terms));
+  ladder.images.assign(kLadderDirections * width, 0.0f);
+  Eigen::Map<RowMajor> images(ladder.images.data(), kLadderDirections,
+                              static_cast<Eigen::Index>(width));
+  images.leftCols(terms) = harmonics * eigen;
+  images.col(terms) = harmonics * mean;
   ladder.harmonics = basis;
   return ladder;
 }

@@ -9,28 +9,20 @@
 
 #include <type_traits>
 
+#include <hwy/cache_control.h>
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
 
 #include "burnish/sphere/half_space.h"
 #include "burnish/sphere/octahedral_map.h"
 #include "shading/block.h"
+#include "shading/multiply_rows-inl.h"
 #include "sphere/half_space-inl.h"
 #include "sphere/lobes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace burnish {
 namespace HWY_NAMESPACE {
-
-/// Floats as lanes of D.
-template <class D>
-HWY_INLINE hn::VFromD<D> load_floats(D d, const float* values) {
-  if constexpr (std::is_same_v<hn::TFromD<D>, float>) {
-    return hn::LoadU(d, values);
-  } else {
-    return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, D>(), values));
-  }
-}
 
 template <class D, class T>
 HWY_INLINE Vector3<hn::VFromD<D>> load(D d, const BlockVector3<T>& vectors, size_t i) {
@@ -157,7 +149,20 @@ HWY_INLINE void read_ssdf(D d, const PreparedTransfer& transfer, const ShadingBl
                           size_t terms, const BlockFootprints<T>& footprints, BlockSsdf<T>& ssdf) {
   const size_t stride = padded_terms(transfer.terms);
   for (size_t i = 0; i < block.count; ++i) ssdf.value[i] = ssdf.by_u[i] = ssdf.by_v[i] = 0;
+  // The bases are larger than the near caches: what the next rows read is fetched meanwhile.
+  constexpr size_t kAhead = 2;
+  const auto fetch = [&](size_t r) HWY_ATTR {
+    if (r >= block.row_count) return;
+    const VisibilityRow<T>& row = block.row[r];
+    size_t texel[4];
+    footprint_texels(footprints.x[row.point], footprints.y[row.point], transfer.resolution, texel);
+    const float* eigen = transfer.bases[row.basis].eigen.data();
+    for (const size_t t : texel)
+      for (size_t k = 0; k < terms; k += 16) hwy::Prefetch(eigen + t * stride + k);
+  };
+  for (size_t r = 0; r < kAhead; ++r) fetch(r);
   for (size_t r = 0; r < block.row_count; ++r) {
+    fetch(r + kAhead);
     const VisibilityRow<T>& row = block.row[r];
     const PreparedTransfer::Basis& basis = transfer.bases[row.basis];
     const size_t i = row.point;

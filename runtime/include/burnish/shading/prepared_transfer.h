@@ -24,7 +24,7 @@ struct PreparedTransfer {
   /// A basis of the visibility ladder as pictures of the sphere, in the directions of the grid by
   /// which lights are integrated (prepared_lights.h), and as it was baked.
   struct Ladder {
-    std::vector<float> images;  ///< [kLadderDirections][1 + terms]: mean first
+    std::vector<float> images;  ///< of each direction: the terms', then the mean's, padded
     LadderBasis harmonics;
   };
 
