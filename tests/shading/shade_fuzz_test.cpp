@@ -296,6 +296,30 @@ TEST(ShadeFuzz, PointsBetweenVerticesAreFiniteAndNotNegative) {
   }
 }
 
+/// Of which floating point, even double, leaves no digits.
+TEST(ShadeFuzz, NeedlesOfLightAreFiniteAndNotNegative) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed + 4);
+  Material material = white(SpecularModel::ashikhmin_shirley, 0.3f, 0.1f);
+  material.diffuse = Rgb::Ones();
+  const PreparedMaterial prepared = prepare_material(material, {});
+  for (int i = 0; i < 300; ++i) {
+    Transfer transfer = random_transfer({.vertices = 32, .terms = 1}, random);
+    place_extremely(transfer, random);
+    const PreparedTransfer seen = prepare_transfer(transfer);
+    const Frame<float> frame = frame_from_axis(random_unit(random));
+    LightRig rig;
+    rig.rectangles.push_back({one_of<4>({0, 1e-30f, 1, 1e6f}, random) * random_unit(random),
+                              one_of<3>({1e-12f, 1e-3f, 1}, random) * frame.x,
+                              one_of<4>({1e-3f, 1, 1e6f, 1e18f}, random) * frame.y, Rgb::Ones(),
+                              true});
+    const PreparedLights lights = prepare_lights(rig, seen, {});
+    std::vector<Rgb> radiance(transfer.vertex_count());
+    shade_vertices(seen, {&lights}, {&prepared, 1}, {}, Vector3f::Zero(), {}, 0, radiance);
+    ASSERT_TRUE(is_sound(radiance, false)) << "case " << i;
+  }
+}
+
 /// As bright as light and materials may be, one after the other.
 TEST(ShadeFuzz, TheBrightestSpecularIsFinite) {
   SCOPED_TRACE(kSeed);

@@ -163,9 +163,11 @@ RectangleMoments moments_in_frame(const SeenRectangle& seen) {
 }
 
 /// Bandwidth of an ASG with this mean of (v . x)^2. For equal bandwidths b it is exactly (1 - A(b /
-/// 2)) / 4, A the mean cosine of an SG.
+/// 2)) / 4, A the mean cosine of an SG. Those of needles, of which rounding leaves nothing, are
+/// held to what it may be.
 float bandwidth_of_second_moment(double moment) {
-  const double bandwidth = 2 * sharpness_from_mean(resultant_from_complement(4 * moment));
+  const double complement = std::clamp(4 * moment, 0.0, 1.0);
+  const double bandwidth = 2 * sharpness_from_mean(resultant_from_complement(complement));
   return static_cast<float>(std::min(bandwidth, double(kMaxBandwidth)));
 }
 
