@@ -98,9 +98,10 @@ struct Seen {
   }
 };
 
-/// An SSDF of order 1, of rounded coefficients and sums, is off by some 2e-7 rad, and what is seen
-/// of all lights together changes by less than a few times their mean per radian.
-constexpr double kRounding = 1e-6;
+/// An SSDF of order 1, of rounded coefficients and sums, is off by some 2e-7 rad, and reciprocals
+/// by as much of themselves; what is seen of all lights together changes by less than a few times
+/// their mean per radian.
+constexpr double kRounding = 2e-6;
 
 TEST(PreparedTransfer, APointSeesTheMeanAndItsTermsOfAnyNumber) {
   SCOPED_TRACE(kSeed);

@@ -253,11 +253,13 @@ HWY_INLINE void eval_vector(D d, const PrefilteredEnvironment& environment, size
                         HWY_ATTR { return hn::Load(d, array.data() + first); };
   const V bandwidth_x = load(lobes.bandwidth_x), bandwidth_y = load(lobes.bandwidth_y);
   TapRow<V> row = plan_taps(d, bandwidth_x, bandwidth_y, max_taps);
-  // A row of taps blurs along its axis: it does not need the map's own pixels, at ten times the
-  // cost, across it.
+  // A row of few taps blurs along its axis: the map's own pixels, at ten times the cost, would not
+  // make it exact across it.
+  constexpr int kFew = 8;
   const V widest = hn::Set(d, static_cast<T>(0.98f * environment.levels.back().bandwidth));
-  row.bandwidth =
-      hn::IfThenElse(hn::Gt(row.taps, one), hn::Min(row.bandwidth, widest), row.bandwidth);
+  if (max_taps <= kFew)
+    row.bandwidth =
+        hn::IfThenElse(hn::Gt(row.taps, one), hn::Min(row.bandwidth, widest), row.bandwidth);
   LaneLevels<T> levels;
   find_levels(d, environment, row.bandwidth, levels);
   const Vector3<V> z = {load(lobes.z.x), load(lobes.z.y), load(lobes.z.z)};
