@@ -13,6 +13,12 @@
 
 #include <hwy/highway.h>
 
+#ifdef BURNISH_FEW_TARGETS
+// What sanitizers add to a function is no longer linear in its size when all is inlined in it.
+#undef HWY_INLINE
+#define HWY_INLINE inline
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace burnish {
 namespace HWY_NAMESPACE {
