@@ -101,7 +101,7 @@ RunResult run_limited(const std::string& limit, const std::vector<std::string>& 
 
 TEST(BakeResume, AFullDiskLeavesTheOldFileAndWhatIsFinished) {
   const ScratchFolder folder;
-  write_whole_file(folder.file("sphere.obj"), sphere_obj(40, 80));
+  write_whole_file(folder.file("sphere.obj"), sphere_obj(12, 24));
   ASSERT_EQ(burnish(bake_of(folder, "whole.h5")).exit_code, 0);
   write_whole_file(folder.file("full.h5"), "old");
   const RunResult full = run_limited("-f 256", bake_of(folder, "full.h5"));
@@ -121,7 +121,7 @@ TEST(BakeResume, AFullDiskLeavesTheOldFileAndWhatIsFinished) {
 
 TEST(BakeResume, RefusesOtherInputsAndStartsWhereNothingIs) {
   const ScratchFolder folder;
-  write_whole_file(folder.file("sphere.obj"), sphere_obj(40, 80));
+  write_whole_file(folder.file("sphere.obj"), sphere_obj(12, 24));
   const RunResult nothing = burnish(joined(bake_of(folder, "a.h5"), {"--resume"}));
   EXPECT_EQ(nothing.exit_code, 0) << nothing.err;
   EXPECT_NE(nothing.out.find("nothing to resume"), std::string::npos) << nothing.out;
