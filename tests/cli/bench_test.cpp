@@ -3,12 +3,14 @@
 #include "bench/bench.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "bench/sphere_truth.h"
+#include "burnish/sphere/batch.h"
 #include "sample_files.h"
 #include "support/csv.h"
 
@@ -69,21 +71,28 @@ TEST(BenchFrame, CsvQuotesAndKeepsAllDigits) {
             "\"say \"\"x\"\"\",,18446744073709551615\r\n");
 }
 
-class BenchProgram : public testing::TestWithParam<const char*> {};
+/// A station that measures error and time of a scene, and what it takes.
+struct SceneStation {
+  std::string name;
+  std::vector<std::string> options;
+};
+
+class BenchProgram : public testing::TestWithParam<SceneStation> {};
 
 TEST_P(BenchProgram, WritesTheSameFiguresAsTableJsonAndCsv) {
   const test::ScratchFolder folder;
   test::write_whole_file(folder.file("box.obj"), test::box_over_floor_obj());
+  const auto& [station, options] = GetParam();
   const test::RunResult result = test::burnish_bench(test::joined(
-      {GetParam(), folder.file("box.obj"), "--repeat", "3", "--warmup", "1", "--reference", "8",
+      {station, folder.file("box.obj"), "--repeat", "3", "--warmup", "1", "--reference", "8",
        "--json", folder.file("b.json"), "--csv", folder.file("b.csv"), "--threads", "1"},
-      test::quick_bake_options()));
+      test::joined(options, test::quick_bake_options())));
   EXPECT_EQ(result.exit_code, 0) << result.err;
   EXPECT_EQ(result.err, "");
   EXPECT_NE(result.out.find("median_ms"), std::string::npos) << result.out;
 
   const json document = json::parse(test::read_whole_file(folder.file("b.json")));
-  EXPECT_EQ(document["station"], GetParam());
+  EXPECT_EQ(document["station"], station);
   const json& machine = document["machine"];
   for (const char* key : {"cpu", "cores", "isa", "compiler", "commit", "command_line"})
     EXPECT_TRUE(machine.contains(key)) << key;
@@ -105,8 +114,111 @@ TEST_P(BenchProgram, WritesTheSameFiguresAsTableJsonAndCsv) {
   EXPECT_NE(csv.find(document["rows"][0]["median_ms"].dump()), std::string::npos) << csv;
 }
 
-INSTANTIATE_TEST_SUITE_P(Stations, BenchProgram, testing::Values("bake", "shade"),
-                         [](const auto& station) { return std::string(station.param); });
+INSTANTIATE_TEST_SUITE_P(Stations, BenchProgram,
+                         testing::Values(SceneStation{"bake", {}},
+                                         SceneStation{"shade", {"--only", "frame"}}),
+                         [](const auto& station) { return station.param.name; });
+
+/// The rows of one table of the shade station, of a baked box over a floor.
+class ShadeTable : public testing::Test {
+ protected:
+  void SetUp() override {
+    const test::RunResult baked = test::make_quick_bake(folder_);
+    ASSERT_EQ(baked.exit_code, 0) << baked.err;
+  }
+  json rows(const std::string& table) const {
+    const test::RunResult result = test::burnish_bench(
+        {"shade", "--transfer", folder_.file("box.h5"), "--only", table, "--repeat", "1",
+         "--warmup", "0", "--reference", "16", "--json", folder_.file("b.json")});
+    EXPECT_EQ(result.exit_code, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+    const json rows = json::parse(test::read_whole_file(folder_.file("b.json")))["rows"];
+    EXPECT_FALSE(rows.empty());
+    return rows;
+  }
+  const test::ScratchFolder folder_;
+};
+
+TEST_F(ShadeTable, BoundIsTheLargerOfBytesAndMultiplyAdds) {
+  int bounds = 0, parts = 0;
+  for (const json& row : rows("bound")) {
+    EXPECT_GT(row["median_ms"].get<double>(), 0);
+    if (row["what"] == "parts") ++parts;
+    if (row["what"] != "bound") continue;
+    ++bounds;
+    const double bytes_ms = row["bytes_ms"], sums_ms = row["multiply_adds_ms"];
+    EXPECT_EQ(row["bound_ms"].get<double>(), std::max(bytes_ms, sums_ms));
+    // 24 vertices of at least 8 half coefficients, position, normal, tangent, basis and radiance:
+    // 1.5 kB; the eigenimages of 32^2 texels, more.
+    EXPECT_GT(row["megabytes"].get<double>(), 0.0015);
+    EXPECT_GT(row["copy_gb_per_s"].get<double>(), 0);
+    EXPECT_GT(row["peak_gmadd_per_s"].get<double>(), 0);
+  }
+  EXPECT_EQ(bounds, 8);  // four qualities, each with highlights of lobes and of the map
+  EXPECT_EQ(parts, 5);
+}
+
+TEST_F(ShadeTable, Table1HasTheEightScenesOfThePaper) {
+  const int vertices[] = {25000, 54000, 29000, 46000, 25000, 6000, 17000, 16000};
+  const json table = rows("table1");
+  ASSERT_EQ(table.size(), 16u);
+  for (size_t i = 0; i < table.size(); ++i) {
+    // The knot comes in whole rings.
+    EXPECT_NEAR(table[i]["vertices"].get<double>(), vertices[i / 2], 0.05 * vertices[i / 2]);
+    EXPECT_EQ(table[i]["settings"], i % 2 == 0 ? "paper" : "balanced");
+    EXPECT_GT(table[i]["fps"].get<double>(), 0);
+    EXPECT_GT(table[i]["paper_fps"].get<double>(), 80);
+  }
+}
+
+TEST_F(ShadeTable, TargetsHasARowForEachInstructionSet) {
+  const size_t sets = batch::instruction_sets().size();
+  const json table = rows("targets");
+  ASSERT_EQ(table.size(), 2 * sets);
+  for (size_t i = 0; i < table.size(); ++i) {
+    EXPECT_EQ(table[i]["instruction_set"], std::string(batch::instruction_sets()[i % sets]));
+    EXPECT_EQ(table[i].contains("over_the_next"), i % sets + 1 < sets);
+  }
+}
+
+TEST_F(ShadeTable, MemoryIsThatOfTheRows) {
+  const json table = rows("memory");
+  ASSERT_EQ(table.size(), 4u);
+  for (const json& row : table) {
+    const int coefficient = row["row"] == "float16" ? 2 : 4;
+    const int terms = row["terms"].get<int>() + row["ladder_terms"].get<int>();
+    // Position, normal and tangent of three floats, and the basis.
+    EXPECT_EQ(row["bytes_per_vertex"], 36 + 1 + coefficient * terms);
+    EXPECT_EQ(row["held_per_vertex"], row["bytes_per_vertex"]);
+  }
+  EXPECT_EQ(table[0]["ladder_terms"], 0);
+  EXPECT_GT(table[2]["ladder_terms"], 0);
+}
+
+TEST_F(ShadeTable, ShortHasARowForEachShortPath) {
+  std::map<std::string, json> by_name;
+  for (const json& row : rows("short")) by_name[row["row"].get<std::string>()] = row;
+  EXPECT_EQ(by_name.size(), 6u);
+  EXPECT_EQ(by_name["unoccluded"]["terms"], 0);
+  EXPECT_EQ(by_name["zero lights"]["lobes"], 0);
+  EXPECT_EQ(by_name["whole"]["lobes"], 10);
+}
+
+TEST_F(ShadeTable, PixelsAndMonteCarloTellWhatTheyCompare) {
+  for (const json& row : rows("pixels")) {
+    EXPECT_EQ(row["pixels"], 720 * 480);
+    EXPECT_GT(row["pixels_met"].get<int>(), 720 * 480 / 10);
+    EXPECT_LT(row["pixels_met"].get<int>(), 720 * 480);
+  }
+  for (const json& row : rows("monte-carlo")) {
+    const double more =
+        std::pow(row["reference_l2"].get<double>() / row["relative_l2"].get<double>(), 2);
+    EXPECT_NEAR(row["samples_at_equal_error"].get<double>(), 16 * more, 1e-9 * 16 * more);
+    EXPECT_NEAR(row["reference_s_at_equal_error"].get<double>(),
+                row["reference_s"].get<double>() * more,
+                1e-9 * row["reference_s_at_equal_error"].get<double>());
+  }
+}
 
 TEST(BenchProgram, LightTellsErrorAndTimeOfFitsAndLookups) {
   const test::ScratchFolder folder;

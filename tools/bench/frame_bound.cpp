@@ -76,9 +76,8 @@ MachineLimits measure_limits() {
   }
 #endif
   volatile float sink = 0;
-  const double chains_s = best_of(4, [&] {
-    tbb::parallel_for(0, threads, [&](int) { sink = chains(); });
-  });
+  const double chains_s =
+      best_of(4, [&] { tbb::parallel_for(0, threads, [&](int) { sink = chains(); }); });
   limits.multiply_adds_per_s =
       static_cast<double>(threads) * width * kChains * static_cast<double>(kSteps) / chains_s;
   return limits;

@@ -10,8 +10,7 @@ int main(int argc, char** argv) {
               declare_light_bench},
       Command{"material", "error of specular materials as lobes, by model, roughness and view",
               declare_material_bench},
-      Command{"shade", "time of shading all vertices, and its error, by material",
-              declare_shade_bench},
+      Command{"shade", "the frame: times, errors, bounds and growth", declare_shade_bench},
       Command{"sphere", "ns a call of each operator of the sphere, and the error it has for that",
               declare_sphere_bench},
   };

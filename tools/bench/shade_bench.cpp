@@ -1,80 +1,47 @@
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "bench.h"
+#include "common/options.h"
 #include "common/pipeline_options.h"
-#include "common/reports.h"
+#include "shade_tables.h"
 #include "stations.h"
-#include "subject.h"
 
 namespace burnish::tools {
 namespace {
 
+struct Table {
+  const char* name;
+  std::vector<BenchRow> (*measure)(const ShadeBench& bench);
+};
+
+constexpr Table kTables[] = {
+    {"frame", frame_table},     {"bound", bound_table},   {"table1", table1},
+    {"targets", targets_table}, {"growth", growth_table}, {"short", short_table},
+    {"memory", memory_table},   {"pixels", pixels_table}, {"monte-carlo", monte_carlo_table}};
+
 struct Options {
   SubjectOptions subject;
-  ShadingOptions shading;
+  std::string transfer;
+  std::string only = "all";
   BenchOptions bench;
 };
-
-struct Look {
-  const char* name;
-  std::vector<Material> materials;
-  std::vector<std::uint8_t> material_id;
-};
-
-/// The scene's own materials, and each model alone over the whole mesh.
-std::vector<Look> looks_of(const ProceduralScene& scene) {
-  Material diffuse;
-  Material brushed;
-  brushed.diffuse = Rgb::Constant(0.1f);
-  brushed.specular = Rgb::Constant(0.5f);
-  brushed.alpha_x = 0.3f;
-  brushed.alpha_y = 0.03f;
-  Material ward = brushed, ashikhmin = brushed;
-  ward.model = SpecularModel::ward;
-  ashikhmin.model = SpecularModel::ashikhmin_shirley;
-  ashikhmin.specular = Rgb::Ones();
-  ashikhmin.fresnel.normal_reflectance = brushed.specular;
-  return {{"scene", scene.materials, scene.material_id},
-          {"diffuse", {diffuse}, {}},
-          {"ward 0.3/0.03", {ward}, {}},
-          {"ashikhmin 0.3/0.03", {ashikhmin}, {}}};
-}
-
-BenchRow bench_look(const Options& options, const ProceduralScene& scene, const Look& look,
-                    const Transfer& transfer, const PreparedTransfer& prepared,
-                    const StudioLight& studio, Work& work) {
-  const Subject subject = {&transfer, look.materials, look.material_id, nullptr, &prepared};
-  const Vector3f& eye = scene.camera.origin;
-  const Timing timing = measure(
-      options.bench, [&] { shade_all_vertices(subject, studio.lighting(), eye, options.shading); });
-  const auto vertices = static_cast<double>(transfer.vertex_count());
-  BenchRow row = {{"material", look.name}, {"scene", scene.name}};
-  row["vertices"] = transfer.vertex_count();
-  row["terms"] = transfer.terms();
-  row["lobes"] = studio.lights.lobes.size();
-  add_timing(row, timing, options.bench);
-  row["ns_per_vertex"] = timing.median_s * 1e9 / vertices;
-  row["vertices_per_s"] = vertices / timing.median_s;
-  row["bytes_per_vertex"] = prepared.bytes_per_vertex();
-  if (options.subject.reference_samples > 0)
-    row.update(
-        error_report(vertex_error(subject, studio, eye, options.shading, options.subject, work)));
-  return row;
-}
 
 void run(const Options& options) {
   check_bake_options(options.subject.bake);
   require_writable(std::vector{options.bench.json, options.bench.csv});
   Work work(options.bench.common());
-  const ProceduralScene scene = load_subject(options.subject.name);
-  const Transfer transfer =
-      bake(scene.mesh, {}, options.subject.bake, {.progress = work.progress()});
-  const PreparedTransfer prepared = prepare_transfer(transfer);
-  const StudioLight studio = make_studio_light(prepared, options.shading, work);
+  ShadeScene scene = load_shade_scene(options.subject, options.transfer, work);
+  const ShadeBench bench = {scene, options.subject, options.bench, work};
   std::vector<BenchRow> rows;
-  for (const Look& look : looks_of(scene))
-    rows.push_back(bench_look(options, scene, look, transfer, prepared, studio, work));
+  for (const Table& table : kTables) {
+    if (options.only != "all" && options.only != table.name) continue;
+    for (BenchRow& row : table.measure(bench)) {
+      row["scene"] = scene.name;
+      rows.push_back(std::move(row));
+    }
+  }
   report_bench("shade", rows, options.bench, work);
 }
 
@@ -82,9 +49,14 @@ void run(const Options& options) {
 
 std::function<void()> declare_shade_bench(CLI::App& app) {
   const auto options = std::make_shared<Options>();
-  options->bench.repeat = 9;
+  options->bench.repeat = 25;
+  options->subject.name = "knot";
   add_subject_options(app, options->subject);
-  add_shading_options(app, options->shading);
+  add_file(app, "--transfer", "FILE.h5", options->transfer,
+           "measure on a baked file instead of baking SCENE", ".h5");
+  std::vector<std::pair<std::string, std::string>> choices = {{"all", "all"}};
+  for (const Table& table : kTables) choices.emplace_back(table.name, table.name);
+  add_choice(app, "--only", options->only, choices, "the table to measure");
   add_bench_options(app, options->bench);
   return [options] { run(*options); };
 }
