@@ -298,6 +298,65 @@ TEST_F(Pipeline, EachLookOptionChangesThePicture) {
   EXPECT_LT(relative_difference(render("turned", {"--rotate-env", "360"}), plain), 1e-2);
 }
 
+TEST_F(Pipeline, QualityIsOverriddenByDialsInAnyOrder) {
+  const std::vector<std::string> brushed = {"--material", "ward", "--alpha-x", ".3"};
+  const auto with = [&](const std::string& name, const std::vector<std::string>& options) {
+    return render(name, joined(brushed, options));
+  };
+  const Image plain = with("plain", {});
+  const Image fast = with("fast", {"--quality", "fast"});
+  EXPECT_EQ(relative_difference(with("balanced", {"--quality", "balanced"}), plain), 0);
+  EXPECT_GT(relative_difference(fast, plain), 2e-3);  // well above the rounding of halves, 5e-4
+  EXPECT_GT(relative_difference(with("accurate", {"--quality", "accurate"}), plain), 0);
+  EXPECT_EQ(relative_difference(with("set", {"--specular-form", "peak", "--specular-taps", "1",
+                                             "--specular-lobes", "1", "--environment-taps", "3"}),
+                                fast),
+            0);
+  const Image before = with("before", {"--visibility", "cap", "--quality", "fast", "--terms", "2"});
+  const Image after = with("after", {"--terms", "2", "--quality", "fast", "--visibility", "cap"});
+  EXPECT_EQ(relative_difference(before, after), 0);
+  EXPECT_GT(relative_difference(before, fast), 2e-3);
+}
+
+TEST_F(Pipeline, BenchmarkTimesFramesAndWritesNoPicture) {
+  const std::vector<std::string> before = folder_.names();
+  for (const std::string per : {"vertex", "pixel"}) {
+    const RunResult result =
+        burnish({"render", transfer_, "--env", environment_, "--size", "48x32", "--per", per,
+                 "--frames", "7", "--benchmark", "--report", folder_.file("r.json")});
+    expect_success(result);
+    EXPECT_NE(result.out.find("frames/s"), std::string::npos) << result.out;
+    const json figures = json::parse(read_whole_file(folder_.file("r.json")))["benchmark"];
+    EXPECT_EQ(figures["frames"], 7);
+    EXPECT_EQ(figures["per"], per);
+    EXPECT_EQ(figures.contains("trace_ms"), per == "pixel");
+    for (const char* part : {"prepare_ms", "shade_ms", "total_ms"}) {
+      const json& ms = figures[part];
+      EXPECT_GT(ms["min"].get<double>(), 0) << part;
+      EXPECT_LE(ms["min"].get<double>(), ms["median"].get<double>()) << part;
+      EXPECT_LE(ms["median"].get<double>(), ms["percentile_95"].get<double>()) << part;
+    }
+    EXPECT_NEAR(figures["fps"].get<double>() * figures["total_ms"]["median"].get<double>(), 1000,
+                1e-6);
+  }
+  std::filesystem::remove(folder_.file("r.json"));
+  EXPECT_EQ(folder_.names(), before);
+}
+
+TEST_F(Pipeline, BenchmarkRefusesWhatItWouldNotDo) {
+  const std::vector<std::vector<std::string>> refused = {
+      {"--benchmark", "--png", folder_.file("a.png")},
+      {"--benchmark", "--turntable", "3"},
+      {"--benchmark", "--reference", "4"},
+      {"--frames", "3", "--png", folder_.file("a.png")}};
+  for (const auto& options : refused) {
+    const RunResult result = burnish(joined({"render", transfer_, "--env", environment_}, options));
+    EXPECT_EQ(result.exit_code, 1) << testing::PrintToString(options);
+    EXPECT_TRUE(is_one_clean_line(result.err)) << result.err;
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder_.file("a.png")));
+}
+
 TEST_F(Pipeline, TermsBeyondTheBakedOnesAreRefused) {
   const RunResult result = burnish(
       {"render", transfer_, "--env", environment_, "--terms", "9", "--png", folder_.file("a.png")});

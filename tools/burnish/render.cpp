@@ -14,6 +14,7 @@
 #include "common/options.h"
 #include "common/program.h"
 #include "common/reports.h"
+#include "frame_benchmark.h"
 #include "harness/error_metrics.h"
 #include "harness/reference_integrator.h"
 #include "look_options.h"
@@ -38,6 +39,8 @@ struct Options {
   ShadePer per = ShadePer::vertex;
   float exposure_stops = 0;
   int turntable = 0;
+  bool benchmark = false;
+  int frames = 100;  ///< of the benchmark
   int reference_samples = 0;
   std::uint64_t seed = 1;
   Outputs outputs;
@@ -63,8 +66,19 @@ Outputs frame_outputs(const Options& options, int frame) {
   return with_infix(options.outputs, fmt::format("{:04}", frame));
 }
 
+/// A benchmark writes no picture.
+void check_benchmark(const Options& options) {
+  if (!options.outputs.exr.empty() || !options.outputs.png.empty())
+    throw UsageError("--benchmark: found an output, expected none: nothing is written");
+  if (options.turntable > 0 || options.reference_samples > 0 || !options.compare.empty())
+    throw UsageError(
+        "--benchmark: found --turntable, --reference or --compare with it, expected none of them");
+}
+
 void check(const Options& options) {
-  if (options.outputs.exr.empty() && options.outputs.png.empty())
+  if (options.benchmark)
+    check_benchmark(options);
+  else if (options.outputs.exr.empty() && options.outputs.png.empty())
     throw UsageError("no output given, expected -o FILE.exr, --png FILE.png or both");
   if (!options.compare.empty() && options.reference_samples == 0)
     throw UsageError("--compare: found no reference to compare with, expected --reference SPP");
@@ -86,14 +100,6 @@ void check(const Options& options) {
     outputs.insert(outputs.end(), {named.exr, named.png});
   }
   require_writable(outputs);
-}
-
-Camera turned(const Camera& camera, const Vector3f& up, double angle_rad) {
-  Camera result = camera;
-  if (angle_rad == 0) return result;  // to the bit
-  const Eigen::AngleAxisf turn(static_cast<float>(angle_rad), up);
-  result.origin = camera.target + turn * (camera.origin - camera.target);
-  return result;
 }
 
 void write_picture(const Image& image, const Outputs& outputs, float exposure_stops) {
@@ -125,23 +131,13 @@ nlohmann::ordered_json render_truth(const Options& options, const Look& look,
   return report;
 }
 
-void run(const Options& options) {
-  check(options);
-  Work work(options.common);
-  const Look look = load_look(options.look, work);
-  // The truth is that of a map; lobes are what shading makes of it.
-  if (options.reference_samples > 0 && look.environment.pixels.empty() && !look.rig.lobes.empty())
-    throw UsageError("--reference: found lobes without their environment map, expected --env");
+/// The frames, and what the report says of them.
+nlohmann::ordered_json render_frames(const Options& options, const Look& look, const Camera& camera,
+                                     Work& work) {
+  nlohmann::ordered_json report;
   const SceneRays rays(look.transfer);
   const Subject subject = look.subject();
-  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
-  const Camera camera = look_camera(options.look, look.transfer, aspect);
   const Vector3f up = up_direction(options.look.up);
-
-  nlohmann::ordered_json report = look.report;
-  report["camera"] = format_camera(camera);
-  report["width"] = options.width;
-  report["height"] = options.height;
   const int frames = std::max(options.turntable, 1);
   for (int frame = 0; frame < frames; ++frame) {
     const double angle_rad = 2 * kPi<double> * frame / frames;
@@ -160,6 +156,29 @@ void run(const Options& options) {
       report["reference"] = render_truth(options, look, subject, rays, hits, picture, work);
     if (options.turntable > 0 && !work.progress()("frames", frame + 1, frames)) throw Cancelled();
   }
+  return report;
+}
+
+void run(const Options& options) {
+  check(options);
+  Work work(options.common);
+  Look look = load_look(options.look, work);
+  // The truth is that of a map; lobes are what shading makes of it.
+  if (options.reference_samples > 0 && look.environment.pixels.empty() && !look.rig.lobes.empty())
+    throw UsageError("--reference: found lobes without their environment map, expected --env");
+  const float aspect = static_cast<float>(options.width) / static_cast<float>(options.height);
+  const Camera camera = look_camera(options.look, look.transfer, aspect);
+
+  nlohmann::ordered_json report = look.report;
+  report["camera"] = format_camera(camera);
+  report["width"] = options.width;
+  report["height"] = options.height;
+  if (options.benchmark)
+    report["benchmark"] = benchmark_frames(
+        {options.frames, {camera, options.width, options.height, options.antialias}, options.per},
+        options.look, look, work);
+  else
+    report.update(render_frames(options, look, camera, work));
   report["machine"] = machine_record(work.threads());
   write_json(options.common.report, report);
 }
@@ -174,6 +193,12 @@ void add_picture_options(CLI::App& app, Options& options) {
   add_number(app, "--turntable", "N", options.turntable, {0, 9999, "frames"},
              "writes N frames, numbered from 0000, the eye turning about the upward axis (0: one "
              "picture)");
+  CLI::Option* benchmark = app.add_flag(
+      "--benchmark", options.benchmark,
+      "writes no picture: times frames of a moving view and turning lights, with --per pixel at "
+      "--size and --antialias");
+  add_number(app, "--frames", "N", options.frames, {1, 100000, "frames"}, "of --benchmark")
+      ->needs(benchmark);
   add_number(app, "--reference", "SPP", options.reference_samples, {0, 1 << 20, "samples a pixel"},
              "also renders the truth by Monte Carlo, writes it beside the output as "
              "FILE.reference.exr or .png and prints the relative L2 error (0: not)");

@@ -51,7 +51,30 @@ void check_bake_options(const BakeOptions& options) {
                                  options.resolution, options.directions));
 }
 
+namespace {
+
+/// First of the dials: options are taken in the order of their declaration, so that those given
+/// beside it override it.
+void add_quality_option(CLI::App& app, ShadingOptions& options) {
+  const std::vector<std::pair<std::string, Quality>> qualities = {
+      {"fast", Quality::fast}, {"balanced", Quality::balanced}, {"accurate", Quality::accurate}};
+  add_parsed(app, "--quality", "fast|balanced|accurate",
+             "speed for accuracy: sets the dials of shading that are not given themselves (default "
+             "balanced)",
+             "one of fast|balanced|accurate", [&options, qualities](const std::string& found) {
+               for (const auto& [word, quality] : qualities)
+                 if (word == found) {
+                   options = shading_options(quality);
+                   return true;
+                 }
+               return false;
+             });
+}
+
+}  // namespace
+
 void add_shading_options(CLI::App& app, ShadingOptions& options) {
+  add_quality_option(app, options);
   add_choice(app, "--visibility", options.visibility,
              {{"cap", VisibilityModel::cap},
               {"hemisphere", VisibilityModel::hemisphere},

@@ -102,6 +102,14 @@ Camera frame_bounds(const Vector3f& lower, const Vector3f& upper, float aspect,
   return camera;
 }
 
+Camera turned(const Camera& camera, const Vector3f& up, double angle_rad) {
+  Camera result = camera;
+  if (angle_rad == 0) return result;  // to the bit
+  const Eigen::AngleAxisf turn(static_cast<float>(angle_rad), up);
+  result.origin = camera.target + turn * (camera.origin - camera.target);
+  return result;
+}
+
 PrimaryRays primary_rays(const Camera& camera, int width, int height) {
   const Vector3d forward =
       (camera.target.cast<double>() - camera.origin.cast<double>()).normalized();

@@ -28,6 +28,9 @@ std::string format_camera(const Camera& camera);
 Camera frame_bounds(const Vector3f& lower, const Vector3f& upper, float aspect,
                     const Vector3f& up = Vector3f::UnitY());
 
+/// The eye turned about an axis through the target, along the unit vector `up`.
+Camera turned(const Camera& camera, const Vector3f& up, double angle_rad);
+
 /// The rays of a camera through a picture plane of width x height pixels. Continuous pixel
 /// coordinates: (0, 0) is the top left corner, (width, height) the bottom right.
 struct PrimaryRays {

@@ -98,7 +98,7 @@ std::vector<Rgb> shade_all_vertices(const Subject& subject, const Lighting& ligh
                                     const Vector3f& eye, const ShadingOptions& options) {
   const std::vector<PreparedMaterial> materials = prepare_materials(subject.materials, options);
   std::vector<Rgb> radiance(subject.transfer->vertex_count());
-  tbb::parallel_for(tbb::blocked_range<size_t>(0, radiance.size(), 64), [&](const auto& range) {
+  tbb::parallel_for(tbb::blocked_range<size_t>(0, radiance.size(), 512), [&](const auto& range) {
     if (subject.varying)
       return shade_vertices(*subject.prepared, lighting, subject.materials[0],
                             variation_of(subject.varying->vertices), eye, options, range.begin(),
