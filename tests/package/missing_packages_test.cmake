@@ -2,23 +2,18 @@
 # with a Debian package that tools/setup installs.
 cmake_minimum_required(VERSION 3.25)
 
-file(STRINGS ${SOURCE_DIR}/CMakeLists.txt lines REGEX "^ *burnish_require\\(")
+include(${CMAKE_CURRENT_LIST_DIR}/required_packages.cmake)
 file(STRINGS ${SOURCE_DIR}/tools/setup setup_lines)
 list(JOIN setup_lines " " setup)
 
-set(expected "embree (Debian package libembree-dev)" "stb (Debian package libstb-dev)")
-set(disabled -DCMAKE_DISABLE_FIND_PACKAGE_embree=ON -DCMAKE_IGNORE_PATH=/usr/include)
-foreach(line IN LISTS lines)
-  if(NOT line MATCHES "burnish_require\\(([A-Za-z0-9_]+) ([a-z0-9.+-]+)")
-    message(FATAL_ERROR "cannot read: ${line}")
-  endif()
+required_packages(${SOURCE_DIR} packages)
+set(expected "stb (Debian package libstb-dev)")
+set(disabled -DCMAKE_IGNORE_PATH=/usr/include)
+foreach(package IN LISTS packages)
+  string(REGEX MATCH "(.*)\\|(.*)" unused "${package}")
   list(APPEND expected "${CMAKE_MATCH_1} (Debian package ${CMAKE_MATCH_2})")
   list(APPEND disabled -DCMAKE_DISABLE_FIND_PACKAGE_${CMAKE_MATCH_1}=ON)
 endforeach()
-list(LENGTH expected count)
-if(count LESS 10)
-  message(FATAL_ERROR "found only ${count} required packages in CMakeLists.txt")
-endif()
 
 file(REMOVE_RECURSE ${SCRATCH_DIR})
 execute_process(

@@ -5,6 +5,10 @@ include(CMakePackageConfigHelpers)
 set(BURNISH_INSTALL_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/burnish)
 
 if(BURNISH_INSTALL)
+  set(burnish_last_component precompute)
+  if(BURNISH_RUNTIME_ONLY)
+    set(burnish_last_component runtime)
+  endif()
   configure_package_config_file(
     ${CMAKE_CURRENT_LIST_DIR}/burnish-config.cmake.in ${PROJECT_BINARY_DIR}/burnish-config.cmake
     INSTALL_DESTINATION ${BURNISH_INSTALL_CMAKE_DIR} NO_SET_AND_CHECK_MACRO)
