@@ -3,34 +3,11 @@
 # commas, find_package() may find no others.
 cmake_minimum_required(VERSION 3.25)
 
-set(build_dir ${SCRATCH_DIR}/build)
+include(${CMAKE_CURRENT_LIST_DIR}/consumer.cmake)
 file(REMOVE_RECURSE ${SCRATCH_DIR})
-
-set(flags "")
-if(BURNISH_SANITIZE)
-  set(flags "-fsanitize=${BURNISH_SANITIZE}")
-endif()
-set(disabled "")
-if(PACKAGES)
-  string(REPLACE "," ";" PACKAGES "${PACKAGES}")
-  foreach(package OpenMesh OpenEXR Imath PNG HDF5 nlohmann_json fmt embree TBB Ceres CLI11 GTest
-          hwy benchmark rapidcheck)
-    if(NOT package IN_LIST PACKAGES)
-      list(APPEND disabled -DCMAKE_DISABLE_FIND_PACKAGE_${package}=ON)
-    endif()
-  endforeach()
-endif()
-
+build_consumer(${PROJECT_DIR} ${SCRATCH_DIR}/build)
 execute_process(
-  COMMAND ${CMAKE_COMMAND} -S ${PROJECT_DIR} -B ${build_dir} -G ${CMAKE_GENERATOR}
-    -DCMAKE_PREFIX_PATH=${PREFIX} -DCMAKE_BUILD_TYPE=${CMAKE_BUILD_TYPE}
-    -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER}
-    -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
-    -DCMAKE_CXX_FLAGS=${flags} ${disabled} --no-warn-unused-cli
-  COMMAND_ERROR_IS_FATAL ANY)
-execute_process(COMMAND ${CMAKE_COMMAND} --build ${build_dir} COMMAND_ERROR_IS_FATAL ANY)
-execute_process(
-  COMMAND ${build_dir}/consumer
+  COMMAND ${SCRATCH_DIR}/build/consumer
   WORKING_DIRECTORY ${SCRATCH_DIR}
   OUTPUT_VARIABLE printed OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
 
