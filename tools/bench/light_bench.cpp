@@ -155,7 +155,7 @@ void measure_filter(const std::string& map, const Image& image,
         row["worst"] = worst;
         row["relative_rms"] = std::sqrt(squares / own_squares);
       };
-      add(ShadingOptions{}.environment_taps, "");
+      add(shading_options(Quality::accurate).environment_taps, "");
       if (anisotropy > 1)
         for (const int taps : options.taps) add(taps, fmt::format("_{}_taps", taps));
       rows.push_back(row);
