@@ -49,8 +49,9 @@ struct LobeBoundaries {
 /// Three for each lobe, up to whole pairs of vectors.
 inline size_t boundary_columns(size_t lobes) { return (3 * lobes + 31) / 32 * 32 + 16; }
 
-/// Lights ready to shade the points of one transfer: prepared once per change of the lights.
-/// Immutable while shading, and may be shared between threads.
+/// Lights ready to shade the points of one transfer: prepared once per change of the lights, of
+/// their rotation too, but not of the view. Refers to neither rig nor transfer. Immutable while
+/// shading, and may be shared between threads.
 struct PreparedLights {
   std::vector<PreparedLobe> lobes;
   std::vector<int> narrow;  ///< lobes of ladder_share < 1: those of `boundaries`
@@ -59,11 +60,13 @@ struct PreparedLights {
   std::vector<RectangleLight> rectangles;
   std::vector<LobeBoundaries> boundaries;  ///< one for each basis
   std::vector<IrradianceTable> tables;     ///< one for each ladder; none without wide lobes
-  std::vector<float> scratch;
+  std::vector<float> scratch;              ///< of prepare_lights; shading does not read it
 };
 
-/// Leaves out black lights. Throws std::invalid_argument for a light that domain_error
-/// (lobe_domain.h, local_lights.h) objects to. The second form reuses the memory of `lights`.
+/// Leaves out black lights. `options` are those of the frame calls. Throws std::invalid_argument
+/// for a light that domain_error (lobe_domain.h, local_lights.h) objects to; `lights` are of no use
+/// then. The second form reuses the memory of `lights`, yet may allocate. While threads shade with
+/// one PreparedLights, another thread may prepare the next frame's in a second.
 /// @{
 PreparedLights prepare_lights(const LightRig& rig, const PreparedTransfer& transfer,
                               const ShadingOptions& options);
@@ -71,8 +74,8 @@ void prepare_lights(const LightRig& rig, const PreparedTransfer& transfer,
                     const ShadingOptions& options, PreparedLights& lights);
 /// @}
 
-/// What lights a frame, in the world's frame. Without an environment the specular term sees the
-/// lights' lobes instead of the map.
+/// What lights a frame, in the world's frame. Borrowed: both outlive the calls they are given to.
+/// Without an environment the specular term sees the lights' lobes instead of the map.
 struct Lighting {
   const PreparedLights* lights = nullptr;               ///< never null
   const PrefilteredEnvironment* environment = nullptr;  ///< may be null

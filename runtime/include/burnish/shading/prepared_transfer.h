@@ -28,7 +28,7 @@ struct PreparedTransfer {
     LadderBasis harmonics;
   };
 
-  std::vector<Vector3f> positions, normals, tangents;  ///< #V
+  std::vector<Vector3f> positions, normals, tangents;  ///< #V, as in Transfer
   std::vector<std::uint8_t> basis_id;                  ///< #V
   int terms = 0, ladder_terms = 0;                     ///< 0: none
   int resolution = 0;                                  ///< of the bases
@@ -53,7 +53,8 @@ struct PreparedTransfer {
 /// `terms`, rounded up to the lanes of any vector.
 inline size_t padded_terms(int terms) { return (static_cast<size_t>(terms) + 15) / 16 * 16; }
 
-/// Coefficients beyond the range of float16, 65504, make it float32.
+/// `transfer` keeps the rules of Transfer, as one from read_transfer or bake does: sizes and ids
+/// are not checked. Coefficients beyond the range of float16, 65504, make it float32.
 PreparedTransfer prepare_transfer(const Transfer& transfer, RowFormat format = RowFormat::float16);
 
 }  // namespace burnish

@@ -9,8 +9,11 @@
 #include "burnish/shading/prepared_transfer.h"
 #include "burnish/shading/shading_options.h"
 
-/// The frame: radiance of points from what was prepared. Nothing here allocates, throws, locks or
-/// starts threads; call it from as many threads as you like, on ranges that do not overlap.
+/// The frame: radiance of points from what was prepared. No noexcept function here allocates,
+/// throws, locks or starts threads; call them from as many threads as you like, on ranges of
+/// radiance that do not overlap. A vertex' radiance does not depend on the range it is in. Results
+/// are overwritten, finite and, of lights and materials that are not negative, >= 0. Sizes and
+/// indices are the caller's to keep: they are not checked.
 namespace burnish {
 
 /// As prepare_material, of each. Throws std::invalid_argument for a material that domain_error
@@ -53,10 +56,11 @@ inline Vector3f lift_above_horizon(const Vector3f& outgoing, const Vector3f& nor
   return (outgoing + (kMinViewCosine - cosine) * normal).normalized();
 }
 
-/// Radiance of the vertices [first, first + radiance.size()) toward `eye`. `material_id` has an
-/// entry per vertex of the transfer, or is empty: then all have materials[0]. Vertices that face
-/// away from the eye are shaded by lift_above_horizon, so that interpolation across a silhouette
-/// does not darken.
+/// Radiance of the vertices [first, first + radiance.size()), which are vertices of the transfer,
+/// toward `eye`, a place in the world. `material_id` has an entry per vertex of the transfer (not
+/// of the range), an index into `materials`, or is empty: then all have materials[0]. Vertices that
+/// face away from the eye are shaded by lift_above_horizon, so that interpolation across a
+/// silhouette does not darken.
 void shade_vertices(const PreparedTransfer& transfer, const Lighting& lighting,
                     std::span<const PreparedMaterial> materials,
                     std::span<const std::uint8_t> material_id, const Vector3f& eye,

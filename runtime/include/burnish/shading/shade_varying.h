@@ -5,8 +5,9 @@
 
 namespace burnish {
 
-/// As shade_vertices, with a material that varies by vertex. Each vertex' material is prepared
-/// anew: what varies may change from call to call.
+/// As shade_vertices, with a material that varies by vertex: `variation` has entries per vertex of
+/// the transfer (not of the range). Each vertex' material is prepared anew, at its cost: what
+/// varies may change from call to call.
 void shade_vertices(const PreparedTransfer& transfer, const Lighting& lighting,
                     const Material& base, const MaterialVariation& variation, const Vector3f& eye,
                     const ShadingOptions& options, size_t first, std::span<Rgb> radiance) noexcept;
