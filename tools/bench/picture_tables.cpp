@@ -72,16 +72,19 @@ std::vector<BenchRow> monte_carlo_table(const ShadeBench& bench) {
   for (size_t i = 0; i < frames.size(); ++i) {
     draw_frame(frames[i], 0);
     const RelativeL2 error = relative_l2(frames[i].radiance, truth.radiance, truth.variance);
-    const double more = std::pow(rough_error / error.without_noise, 2);
     BenchRow row = frame_row("monte-carlo", frames[i], timings[i], bench.options);
     row["relative_l2"] = error.without_noise;
     row["truth_noise"] = error.truth_noise;
     row["reference_samples"] = kTimedSamples;
     row["reference_l2"] = rough_error;
     row["reference_s"] = rough_s;
-    row["samples_at_equal_error"] = kTimedSamples * more;
-    row["reference_s_at_equal_error"] = rough_s * more;
-    row["reference_over_frame"] = rough_s * more / timings[i].frame.median_s;
+    // Not to be told where the frame's error drowns in the truth's noise.
+    if (error.without_noise > 0) {
+      const double more = std::pow(rough_error / error.without_noise, 2);
+      row["samples_at_equal_error"] = kTimedSamples * more;
+      row["reference_s_at_equal_error"] = rough_s * more;
+      row["reference_over_frame"] = rough_s * more / timings[i].frame.median_s;
+    }
     rows.push_back(std::move(row));
   }
   return rows;
