@@ -15,7 +15,8 @@ execute_process(
   WORKING_DIRECTORY ${SCRATCH_DIR} COMMAND_ERROR_IS_FATAL ANY)
 # A disc in the zenith, about which the lights turn.
 file(WRITE ${SCRATCH_DIR}/zenith.json "{\"format\": \"burnish lights\", \"format_version\": 2,
-  \"directionals\": [{\"toward\": [0, 1, 0], \"irradiance\": [1, 1, 1]}]}\n")
+  \"directionals\": [{\"toward\": [0, 1, 0], \"angular_radius_rad\": 0.1,
+    \"irradiance\": [1, 1, 1]}]}\n")
 # Two pixels of radiance 64 / 256 * 2^(127 - 128) = 0.125.
 string(ASCII 64 64 64 127 64 64 64 127 pixels)
 file(WRITE ${SCRATCH_DIR}/grey.hdr "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n${pixels}")
