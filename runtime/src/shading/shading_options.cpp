@@ -6,7 +6,7 @@ ShadingOptions shading_options(Quality quality) {
   ShadingOptions options;
   switch (quality) {
     case Quality::fast:
-      options.specular = {SpecularForm::peak, 1, 1};
+      options.specular = {SpecularForm::moments, 1, 1};
       options.environment_taps = 3;
       break;
     case Quality::balanced:

@@ -38,7 +38,7 @@ struct ShadingOptions {
 
 /// Points on the trade of speed for accuracy (docs/runtime.md).
 enum class Quality {
-  fast,      ///< highlights of one lobe each, as the paper's, that see the environment three times
+  fast,      ///< highlights of one lobe each, which sees the environment three times
   balanced,  ///< the defaults
   accurate,  ///< lobes cut into nine, as many lookups as they are long
 };
