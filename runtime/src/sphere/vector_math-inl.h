@@ -65,7 +65,8 @@ HWY_INLINE V reciprocal(D d, V x) {
   if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
     const V two = hn::Set(d, 2.0f);
     V y = hn::ApproximateReciprocal(x);
-#if !HWY_ARCH_X86 || HWY_TARGET == HWY_SCALAR  // where the estimate has 8 bits instead of 12
+#if !HWY_ARCH_X86 || HWY_TARGET == HWY_SCALAR || \
+    HWY_TARGET == HWY_EMU128  // where the estimate has 8 bits instead of 12
     y = hn::Mul(y, hn::NegMulAdd(x, y, two));
 #endif
     return hn::Mul(y, hn::NegMulAdd(x, y, two));
@@ -80,7 +81,7 @@ HWY_INLINE V reciprocal_root(D d, V x) {
   if constexpr (sizeof(hn::TFromD<D>) == sizeof(float)) {
     const V half = hn::Mul(hn::Set(d, 0.5f), x), three_halves = hn::Set(d, 1.5f);
     V y = hn::ApproximateReciprocalSqrt(x);
-#if !HWY_ARCH_X86 || HWY_TARGET == HWY_SCALAR
+#if !HWY_ARCH_X86 || HWY_TARGET == HWY_SCALAR || HWY_TARGET == HWY_EMU128
     y = hn::Mul(y, hn::NegMulAdd(half, hn::Mul(y, y), three_halves));
 #endif
     return hn::Mul(y, hn::NegMulAdd(half, hn::Mul(y, y), three_halves));
