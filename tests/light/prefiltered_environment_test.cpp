@@ -149,8 +149,8 @@ TEST(PrefilteredEnvironment, FewTapsServeALobeThatIsNotVeryLong) {
   const PrefilteredEnvironment environment = prefilter_up_to(studio_environment(64), 512);
   const unsigned seed = 5;
   SCOPED_TRACE(seed);
-  // Relative to the map's mean. Which lobes a seed gives differs by compiler, and few of them meet a
-  // lamp: .022 and .054 were measured.
+  // Relative to the map's mean. Which lobes a seed gives differs by compiler, and few of them meet
+  // a lamp: .022 and .054 were measured.
   EXPECT_LT(rms_error(environment, 60, 3, 3, seed), 0.07);
   EXPECT_LT(rms_error(environment, 60, 6, 5, seed), 0.07);
 }
