@@ -308,7 +308,7 @@ TEST_F(Pipeline, QualityIsOverriddenByDialsInAnyOrder) {
   EXPECT_EQ(relative_difference(with("balanced", {"--quality", "balanced"}), plain), 0);
   EXPECT_GT(relative_difference(fast, plain), 2e-3);  // well above the rounding of halves, 5e-4
   EXPECT_GT(relative_difference(with("accurate", {"--quality", "accurate"}), plain), 0);
-  EXPECT_EQ(relative_difference(with("set", {"--specular-form", "peak", "--specular-taps", "1",
+  EXPECT_EQ(relative_difference(with("set", {"--specular-form", "moments", "--specular-taps", "1",
                                              "--specular-lobes", "1", "--environment-taps", "3"}),
                                 fast),
             0);
