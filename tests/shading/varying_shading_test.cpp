@@ -82,7 +82,7 @@ TEST(VaryingShading, WithoutVariationIsAsOneMaterial) {
   float most = 0;
   for (size_t v = 0; v < kVertices; ++v) {
     // Frames and views are rounded once in vectors and once one by one.
-    EXPECT_LT((varied[v] - plain[v]).abs().maxCoeff(), 1e-4f * (0.1f + plain[v].maxCoeff())) << v;
+    EXPECT_LT((varied[v] - plain[v]).abs().maxCoeff(), 1e-5f * (0.1f + plain[v].maxCoeff())) << v;
     most = std::max(most, plain[v].maxCoeff());
   }
   EXPECT_GT(most, 0.1f);  // something is lit

@@ -386,9 +386,11 @@ HWY_INLINE V visible_share(D d, VisibilityModel model, const AnisotropicGaussian
     seen = round_fraction(d, model, lobe, boundary.sine);
     above = round_fraction(d, model, lobe, dot(normal, lobe.z));
   }
-  const V least = hn::Set(d, 1e-7f);  // what rounding leaves of nothing
-  const V share = hn::Mul(hn::Max(seen, zero), reciprocal(d, hn::Max(above, least)));
-  return hn::Min(hn::IfThenElse(hn::Gt(above, least), share, one), one);
+  // Where next to nothing is above the horizon both are rounding, and the share passes to 1.
+  const V little = hn::Set(d, 1e-5f);
+  return hn::Min(hn::Mul(hn::Add(hn::Max(seen, zero), little),
+                         reciprocal(d, hn::Add(hn::Max(above, zero), little))),
+                 one);
 }
 
 }  // namespace HWY_NAMESPACE
