@@ -387,9 +387,9 @@ HWY_INLINE V visible_share(D d, VisibilityModel model, const AnisotropicGaussian
     above = round_fraction(d, model, lobe, dot(normal, lobe.z));
   }
   // Where next to nothing is above the horizon both are rounding, and the share passes to 1.
-  const V little = hn::Set(d, 1e-5f);
-  return hn::Min(hn::Mul(hn::Add(hn::Max(seen, zero), little),
-                         reciprocal(d, hn::Add(hn::Max(above, zero), little))),
+  const V little = hn::Set(d, 1e-10f), held = hn::Max(above, zero);
+  return hn::Min(hn::Mul(hn::MulAdd(hn::Max(seen, zero), held, little),
+                         reciprocal(d, hn::MulAdd(held, held, little))),
                  one);
 }
 
