@@ -175,23 +175,39 @@ TEST(LadderShading, FadesOutAcrossTheCrossover) {
   const BakedPoint baked(beside_a_wall);
   ShadingOptions without;
   without.ladder = false;
+  ShadingOptions with;
+  with.ladder_reach = 1;
   const Frame<float> frame =
       frame_from_axis<float>(Vector3f(0.5f, 0.1f, 0.6f).normalized());  // at the wall's top
   const LightRig rig = one_lobe(frame, 10, 10);
   const float by_ssdf = diffuse(baked.transfer(kAlways), rig, without);
-  const float by_ladder = diffuse(baked.transfer(kAlways), rig, {});
+  const float by_ladder = diffuse(baked.transfer(kAlways), rig, with);
   // Lobe times cosine has a bandwidth of about 11. The step is over at half and at twice that.
-  EXPECT_EQ(diffuse(baked.transfer(5), rig, {}), by_ssdf);
-  EXPECT_EQ(diffuse(baked.transfer(24), rig, {}), by_ladder);
+  EXPECT_EQ(diffuse(baked.transfer(5), rig, with), by_ssdf);
+  EXPECT_EQ(diffuse(baked.transfer(24), rig, with), by_ladder);
   ASSERT_GT(std::abs(by_ssdf - by_ladder), 1e-3f);
   float last = 0;
   for (float crossover = 5; crossover < 24; crossover *= 1.05f) {
     const float share =
-        (diffuse(baked.transfer(crossover), rig, {}) - by_ssdf) / (by_ladder - by_ssdf);
+        (diffuse(baked.transfer(crossover), rig, with) - by_ssdf) / (by_ladder - by_ssdf);
     EXPECT_GE(share, last - 1e-3f) << crossover;  // rounding of the difference
     EXPECT_LE(share, last + 0.1f) << crossover;   // no step: its slope is 1.5 / 2 an octave
     last = share;
   }
+}
+
+TEST(LadderShading, ReachesLobesAsManyTimesSharper) {
+  const BakedPoint baked(beside_a_wall);
+  const LightRig rig =
+      one_lobe(frame_from_axis<float>(Vector3f(0.5f, 0.1f, 0.6f).normalized()), 10, 10);
+  ShadingOptions once, thrice;
+  once.ladder_reach = 1;
+  thrice.ladder_reach = 3;
+  for (const float crossover : {2.0f, 4.0f, 6.0f})
+    EXPECT_FLOAT_EQ(diffuse(baked.transfer(crossover), rig, thrice),
+                    diffuse(baked.transfer(3 * crossover), rig, once))
+        << crossover;
+  EXPECT_NE(diffuse(baked.transfer(4), rig, thrice), diffuse(baked.transfer(4), rig, once));
 }
 
 TEST(LadderShading, VertexReadsItsOwnBasisAndCoefficients) {

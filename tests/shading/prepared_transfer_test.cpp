@@ -217,6 +217,8 @@ TEST(PreparedTransfer, HalfPrecisionIsExactForItsOwnNumbers) {
   const auto round = [](float& value) { value = std::round(256 * value) / 256; };
   std::for_each(transfer.coefficients.begin(), transfer.coefficients.end(), round);
   std::for_each(transfer.ladder_coefficients.begin(), transfer.ladder_coefficients.end(), round);
+  for (SsdfBasis& basis : transfer.bases)
+    std::for_each(basis.eigen.begin(), basis.eigen.end(), round);
   transfer.coefficients[0] = 65504;  // the largest, the smallest and a subnormal
   transfer.coefficients[1] = std::ldexp(1.0f, -14);
   transfer.coefficients[2] = -3 * std::ldexp(1.0f, -24);
@@ -225,6 +227,7 @@ TEST(PreparedTransfer, HalfPrecisionIsExactForItsOwnNumbers) {
   ASSERT_EQ(half.format, RowFormat::float16);
   ASSERT_EQ(single.format, RowFormat::float32);
   EXPECT_TRUE(half.rows32.empty() && single.rows16.empty());
+  EXPECT_TRUE(half.bases[0].eigen32.empty() && single.bases[0].eigen16.empty());
   const std::vector<Rgb> a = shade(half, vertex_points(half), rig);
   const std::vector<Rgb> b = shade(single, vertex_points(single), rig);
   for (size_t i = 0; i < a.size(); ++i) EXPECT_TRUE((a[i] == b[i]).all()) << i;

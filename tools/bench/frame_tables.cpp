@@ -67,9 +67,10 @@ double frame_bytes(const MovingFrame& frame) {
   const size_t each = transfer.bytes_per_vertex() + sizeof(Rgb);
   double bytes = static_cast<double>(transfer.vertex_count() * each + frame.material_id.size());
   for (const PreparedTransfer::Basis& basis : transfer.bases)
-    bytes += floats_in_bytes(basis.mean.size() + basis.eigen.size());
+    bytes += floats_in_bytes(basis.mean.size() + basis.eigen32.size()) +
+             2 * static_cast<double>(basis.eigen16.size());
   for (const IrradianceTable& table : frame.lights.tables)
-    bytes += floats_in_bytes(table.entries.size());
+    bytes += floats_in_bytes(table.means.size() + table.entries.size());
   for (const LobeBoundaries& boundary : frame.lights.boundaries)
     bytes += floats_in_bytes(boundary.mean.size() + boundary.rows.size());
   return bytes;

@@ -43,7 +43,10 @@ FrameTime draw_frame(MovingFrame& frame, int index) {
   const Stopwatch prepare;
   LightRig rig = frame.rig;
   rotate(rig, turn);
-  prepare_lights(rig, *frame.transfer, frame.options, frame.lights);
+  begin_lights(rig, *frame.transfer, frame.options, frame.lights);
+  tbb::parallel_for(size_t{0}, frame.transfer->bases.size(), [&](size_t basis) {
+    finish_lights(*frame.transfer, frame.options, basis, frame.lights);
+  });
   if (frame.environment) frame.environment->environment_from_world = turn.transpose();
   time.prepare_s = prepare.seconds();
   const Stopwatch shade;

@@ -90,6 +90,8 @@ void add_shading_options(CLI::App& app, ShadingOptions& options) {
       "accuracy of a lobe's integral");
   add_choice(app, "--ladder", options.ladder, {{"on", true}, {"off", false}},
              "whether wide lights see through the visibility ladder, where one was baked");
+  add_number(app, "--ladder-reach", "F", options.ladder_reach, {1, 1000},
+             "lights up to F times as sharp as the ladder tells best see through it, too");
   add_choice(app, "--specular-form", options.specular.form,
              {{"peak", SpecularForm::peak}, {"moments", SpecularForm::moments}},
              "how a highlight's lobes are found: by the paper's warp, or by their moments");

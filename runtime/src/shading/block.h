@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "burnish/shading/prepared_transfer.h"
+#include "shading/fetcher.h"
 #include "sphere/block.h"
 
 /// What the frame's kernels share of the points of a block.
@@ -38,6 +39,7 @@ struct ShadingBlock {
   size_t row_count = 0;
   VisibilityRow<T> row[kBlockRows];
   alignas(64) T coefficients[kBlockCoefficients];
+  Fetcher fetcher;  ///< of what the block reads later, and the next one
 };
 
 }  // namespace burnish

@@ -17,7 +17,7 @@ namespace HWY_NAMESPACE {
 namespace {
 
 void product(const float* left, size_t rows, size_t inner, const float* right, size_t columns,
-             float* result) {
+             float* result, size_t stride) {
   const hn::ScalableTag<float> d;
   const size_t width = panel_width(columns);
   for (size_t i = 0; i < rows; i += 4) {
@@ -27,8 +27,8 @@ void product(const float* left, size_t rows, size_t inner, const float* right, s
                   {left + row(0) * inner, left + row(1) * inner, left + row(2) * inner,
                    left + row(3) * inner},
                   inner, right, width, columns,
-                  {result + row(0) * width, result + row(1) * width, result + row(2) * width,
-                   result + row(3) * width});
+                  {result + row(0) * stride, result + row(1) * stride, result + row(2) * stride,
+                   result + row(3) * stride});
   }
 }
 
@@ -46,8 +46,8 @@ HWY_EXPORT(product);
 }  // namespace
 
 void dense_product(const float* left, size_t rows, size_t inner, const float* right, size_t columns,
-                   float* result) noexcept {
-  HWY_DYNAMIC_DISPATCH(product)(left, rows, inner, right, columns, result);
+                   float* result, size_t result_stride) noexcept {
+  HWY_DYNAMIC_DISPATCH(product)(left, rows, inner, right, columns, result, result_stride);
 }
 
 }  // namespace burnish

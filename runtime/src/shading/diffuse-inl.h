@@ -94,15 +94,31 @@ HWY_INLINE AnisotropicGaussian<V> lobe_times_cosine(D d, V bandwidth_x, V bandwi
   return result;
 }
 
-/// Normals in cells of the irradiance table: on an octahedron, unfolded to a square.
+/// Where normals are between corners of the irradiance table: in the triangles into which an
+/// octahedron's faces are cut.
+template <class T>
+struct BlockTriangles {
+  alignas(64) std::int32_t corner[3][kBlock];
+  BlockArray<T> weight[3];
+};
+
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void find_cells(D d, size_t count, const BlockVector3<T>& normals,
-                           BlockFootprints<T>& cells) {
+HWY_INLINE void find_triangles(D d, size_t count, const BlockVector3<T>& normals,
+                               BlockTriangles<T>& triangles) {
   using V = hn::VFromD<D>;
-  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d),
-          half = hn::Set(d, 0.5f * IrradianceTable::kCells);
+  const V one = hn::Set(d, 1.0f), zero = hn::Zero(d);
+  const V half = hn::Set(d, 0.5f * IrradianceTable::kCells);
   const V last = hn::Set(d, IrradianceTable::kCells - 1e-5f);
+  const hn::Rebind<std::int32_t, D> di;
+  const auto store_corner = [&](V column, V row, size_t i, std::int32_t* corner) HWY_ATTR {
+    const V index = hn::MulAdd(row, hn::Set(d, T(IrradianceTable::kCorners)), column);
+    if constexpr (std::is_same_v<T, float>)
+      hn::Store(hn::ConvertTo(di, index), di, corner + i);
+    else
+      hn::StoreU(hn::DemoteTo(di, index), di, corner + i);
+  };
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
+    // The octahedron is unfolded to a square.
     const Vector3<V> n = load(d, normals, i);
     const V length = hn::Add(hn::Add(hn::Abs(n.x), hn::Abs(n.y)), hn::Abs(n.z));
     const V scale = hn::Div(one, hn::Max(length, hn::Set(d, 1e-30f)));
@@ -112,29 +128,23 @@ HWY_INLINE void find_cells(D d, size_t count, const BlockVector3<T>& normals,
       const V place = hn::CopySign(hn::IfThenElse(below, hn::Sub(one, lower), upper), sign);
       return hn::Min(hn::Max(hn::MulAdd(half, place, half), zero), last);
     };
-    store_footprints(d, to_cells(x, y, n.x), to_cells(y, x, n.y), i, cells);
+    const V u = to_cells(x, y, n.x), v = to_cells(y, x, n.y);
+    const V column = hn::Floor(u), row = hn::Floor(v);
+    // Cells are cut along the octahedron's edges, in two of the quadrants the other way.
+    const auto mirrored = hn::Xor(hn::Lt(column, half), hn::Lt(row, half));
+    const V from_left = hn::Sub(u, column), fy = hn::Sub(v, row);
+    const V fx = hn::IfThenElse(mirrored, hn::Sub(one, from_left), from_left);
+    const V near = hn::Add(column, hn::IfThenElseZero(mirrored, one));
+    const V far = hn::Add(column, hn::IfThenZeroElse(mirrored, one)), next = hn::Add(row, one);
+    const auto outer = hn::Gt(hn::Add(fx, fy), one);
+    store_corner(hn::IfThenElse(outer, far, near), hn::IfThenElse(outer, next, row), i,
+                 triangles.corner[0]);
+    store_corner(far, row, i, triangles.corner[1]);
+    store_corner(near, next, i, triangles.corner[2]);
+    hn::Store(hn::Abs(hn::Sub(hn::Sub(one, fx), fy)), d, triangles.weight[0].data() + i);
+    hn::Store(hn::IfThenElse(outer, hn::Sub(one, fy), fx), d, triangles.weight[1].data() + i);
+    hn::Store(hn::IfThenElse(outer, hn::Sub(one, fx), fy), d, triangles.weight[2].data() + i);
   }
-}
-
-/// The corners of the triangle that a place in a cell is in, and their weights. Cells are cut along
-/// the octahedron's edges.
-template <class T>
-HWY_INLINE void cell_triangle(int x, int y, T fraction_x, T fraction_y, size_t (&corner)[3],
-                              T (&weight)[3]) {
-  constexpr int kMiddle = IrradianceTable::kCells / 2;
-  const bool mirrored = (x < kMiddle) != (y < kMiddle);
-  const T fx = mirrored ? 1 - fraction_x : fraction_x, fy = fraction_y;
-  const int x0 = mirrored ? x + 1 : x, x1 = mirrored ? x : x + 1;
-  const bool outer = fx + fy > 1;
-  const auto at = [](int column, int row) {
-    return static_cast<size_t>(row * IrradianceTable::kCorners + column);
-  };
-  corner[0] = outer ? at(x1, y + 1) : at(x0, y);
-  corner[1] = at(x1, y);
-  corner[2] = at(x0, y + 1);
-  weight[0] = std::abs(1 - fx - fy);
-  weight[1] = outer ? 1 - fy : fx;
-  weight[2] = outer ? 1 - fx : fy;
 }
 
 /// The same of a lobe so narrow that one step reaches its peak, and that the cosine does not turn
@@ -169,25 +179,38 @@ HWY_NOINLINE void add_table_irradiance(D d, const PreparedTransfer& transfer,
                                        const PreparedLights& lights, const ShadingBlock<T>& block,
                                        BlockRgb<T>& irradiance) {
   using V = hn::VFromD<D>;
-  BlockFootprints<T> cells;
-  find_cells(d, block.count, block.normal, cells);
-  const size_t terms = padded_terms(transfer.ladder_terms);
-  alignas(64) T sum[kBlock][8] = {};  // with shadow, then without
+  BlockTriangles<T> triangles;
+  find_triangles(d, block.count, block.normal, triangles);
+  const size_t terms = padded_terms(transfer.ladder_terms), entry_size = 3 * terms;
+  alignas(64) T sum[kBlock][IrradianceTable::kMeans] = {};
+  const auto table_of = [&](size_t r) -> const IrradianceTable& {
+    return lights.tables[static_cast<size_t>(transfer.ladder_of(block.row[r].basis))];
+  };
+  // Tables are larger than the nearest cache: what the next rows read is fetched meanwhile.
+  constexpr size_t kAhead = 2;
   for (size_t r = 0; r < block.row_count; ++r) {
     const VisibilityRow<T>& row = block.row[r];
-    const size_t i = row.point;
-    const IrradianceTable& table =
-        lights.tables[static_cast<size_t>(transfer.ladder_of(row.basis))];
-    size_t corner[3];
-    T weight[3];
-    cell_triangle(cells.x[i], cells.y[i], cells.fraction_x[i], cells.fraction_y[i], corner, weight);
+    const IrradianceTable& table = table_of(r);
+    if (r + kAhead < block.row_count) {
+      const float* entries = table_of(r + kAhead).entries.data();
+      const size_t point = block.row[r + kAhead].point;
+      for (const auto& corner : triangles.corner)
+        for (size_t k = 0; k < entry_size; k += 16)
+          hwy::Prefetch(entries + static_cast<size_t>(corner[point]) * entry_size + k);
+    }
     V total[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+    T(&sums)[IrradianceTable::kMeans] = sum[row.point];
     for (int j = 0; j < 3; ++j) {
-      const float* entry = table.entries.data() + corner[j] * table.entry_size();
-      const T share = row.weight * weight[j];
-      for (int c = 0; c < 8; ++c) sum[i][c] += share * static_cast<T>(entry[c]);
+      const auto corner = static_cast<size_t>(triangles.corner[j][row.point]);
+      const float* means = table.means.data() + corner * IrradianceTable::kMeans;
+      const T share = row.weight * triangles.weight[j][row.point];
+      const hn::CappedTag<T, IrradianceTable::kMeans> dm;
+      for (size_t c = 0; c < IrradianceTable::kMeans; c += hn::Lanes(dm))
+        hn::StoreU(
+            hn::MulAdd(hn::Set(dm, share), load_floats(dm, means + c), hn::LoadU(dm, sums + c)), dm,
+            sums + c);
       const V w = hn::Set(d, share);
-      const float* red = entry + IrradianceTable::kTerms;
+      const float* red = table.entries.data() + corner * entry_size;
       for (size_t k = 0; k < terms; k += hn::Lanes(d)) {
         const V coefficient = hn::Mul(w, hn::Load(d, row.ladder + k));
         total[0] = hn::MulAdd(coefficient, load_floats(d, red + k), total[0]);
@@ -197,13 +220,13 @@ HWY_NOINLINE void add_table_irradiance(D d, const PreparedTransfer& transfer,
     }
     T products[4];
     sum_lanes(d, total, products);
-    for (int c = 0; c < 3; ++c) sum[i][c] += products[c];
+    for (int c = 0; c < 3; ++c) sums[c] += products[c];
   }
   for (size_t i = 0; i < block.count; ++i)
     for (size_t c = 0; c < 3; ++c) {
       const T full = sum[i][IrradianceTable::kUnshadowed + c];
       // Rings of the harmonics; signed lights may send less than nothing.
-      irradiance[c][i] += std::clamp(sum[i][c], std::min(full, T(0)), std::max(full, T(0)));
+      irradiance[c][i] += std::min(std::max(sum[i][c], std::min(full, T(0))), std::max(full, T(0)));
     }
 }
 

@@ -113,7 +113,7 @@ void clear(BlockRgb<T>& rgb) {
 template <class D, class T = hn::TFromD<D>>
 HWY_NOINLINE void reflect(D d, const PreparedTransfer& transfer, const PreparedMaterial& material,
                           const Lighting& lighting, const ShadingOptions& options, size_t terms,
-                          bool diffuse, const ShadingBlock<T>& block, BlockRgb<T>& irradiance,
+                          bool diffuse, ShadingBlock<T>& block, BlockRgb<T>& irradiance,
                           BlockRgb<T>& reflected) {
   constexpr int kTogether = 9;
   SliceBlock<T> slices[kTogether];
@@ -123,8 +123,9 @@ HWY_NOINLINE void reflect(D d, const PreparedTransfer& transfer, const PreparedM
     for (int k = first; k < std::min(first + kTogether, material.count); ++k) {
       SliceBlock<T>& slice = slices[placed];
       slice_tooth(d, material, k, block.count, block.outgoing, slice);
-      if (!place_slice(d, transfer, material.form, options, terms, block, slice)) continue;
-      reflect_environment(d, lighting, options, block.count, slice, reflected);
+      if (!turn_slice(d, block, slice)) continue;
+      reflect_environment(d, transfer, material.form, lighting, options, terms, block, slice,
+                          reflected);
       ++placed;
     }
     const bool irradiates = diffuse && first == 0;
@@ -149,7 +150,8 @@ HWY_INLINE void shade_block(D d, const PreparedTransfer& transfer, const Prepare
   const Rgb& albedo = material.material.diffuse;
   const bool diffuse = (albedo > 0).any();
   pad_block(block);
-  if (diffuse || material.count > 0) load_rows(d, transfer, terms, diffuse, block);
+  if ((diffuse && !is_dark(*lighting.lights)) || material.count > 0)
+    load_rows(d, transfer, terms, diffuse, block);
   BlockRgb<T> irradiance;
   clear(irradiance);
   clear(radiance);
@@ -157,6 +159,7 @@ HWY_INLINE void shade_block(D d, const PreparedTransfer& transfer, const Prepare
     add_environment_irradiance(d, transfer, *lighting.lights, options, terms, block, irradiance);
   if (diffuse || material.count > 0)
     reflect(d, transfer, material, lighting, options, terms, diffuse, block, irradiance, radiance);
+  block.fetcher.fetch(block.fetcher.waiting());
   for (size_t i = 0; i < block.count; i += hn::Lanes(d)) {
     const auto above = hn::Gt(hn::Load(d, block.outgoing.z.data() + i), hn::Zero(d));
     for (size_t c = 0; c < 3; ++c) {

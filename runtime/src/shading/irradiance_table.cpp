@@ -7,7 +7,7 @@
 #include "burnish/sphere/batch.h"
 #include "burnish/sphere/gauss_legendre.h"
 #include "shading/dense_product.h"
-#include "visibility/harmonic_grid.h"
+#include "shading/ring_grid.h"
 
 // The irradiance of a light L through a visibility V is the product L V, convolved with the clamped
 // cosine. The cosine lets nothing pass of odd degrees above 1 and hardly anything above 6, so that
@@ -20,8 +20,11 @@ using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::Row
 using Rows = Eigen::Map<RowMajor>;
 using Degrees = std::array<float, kMaxLadderBands>;
 
-constexpr std::array<int, 5> kCosineDegrees = {0, 1, 2, 4, 6};
 constexpr int kCosineHarmonics = 1 + 3 + 5 + 9 + 13;
+constexpr int kCosineFunctions = azimuth_functions(kCosineBands);
+/// Of all channels.
+constexpr int kCosineRows = 3 * kCosineFunctions;
+constexpr Eigen::Index kOpenHarmonics = Eigen::Index{kMaxLadderBands} * kMaxLadderBands;
 constexpr int kNormals = IrradianceTable::kCorners * IrradianceTable::kCorners;
 /// Narrower axes than the grid can tell are widened to this; the ladder cannot tell them, either.
 constexpr float kNarrowestOnGrid = 250;
@@ -94,40 +97,42 @@ const Degrees& open_factors(int bands) {
   return factors[static_cast<size_t>(std::min(bands, kMaxLadderBands))];
 }
 
-/// The harmonics of the directions of the table's normals: [kNormals][kGridHarmonics].
+/// The ladder's harmonics of the directions of the table's normals: [kNormals][kOpenHarmonics].
 const RowMajor& normal_harmonics() {
   static const RowMajor harmonics = [] {
-    RowMajor result(kNormals, static_cast<Eigen::Index>(kGridHarmonics));
+    RowMajor result(kNormals, kOpenHarmonics);
     for (int i = 0; i < kNormals; ++i)
-      eval_harmonics(kMaxLadderBands, normal_of(i), {result.row(i).data(), kGridHarmonics});
+      eval_harmonics(kMaxLadderBands, normal_of(i),
+                     {result.row(i).data(), static_cast<size_t>(kOpenHarmonics)});
     return result;
   }();
   return harmonics;
 }
 
-/// Calls visit(row, harmonic, factor) for the harmonics that the cosine lets pass.
-template <class Visit>
-void for_each_cosine_harmonic(const Visit& visit) {
-  int row = 0;
-  for (const int l : kCosineDegrees)
-    for (int m = 0; m < 2 * l + 1; ++m) visit(row++, l * l + m, cosine_factors()[l]);
-}
-
-/// Harmonics of the grid's directions, transposed: [kCosineHarmonics][kLadderDirections], times the
-/// cosine's factors and a direction's solid angle; and of the normals.
+/// The harmonics that the cosine lets pass, in the order of their functions of the azimuth.
 struct CosineHarmonics {
-  RowMajor grid, normals;
+  /// By function of the azimuth: the functions of the height, times the cosine's factors, on the
+  /// rings of product_grid. [degrees][rings]
+  std::array<RowMajor, kCosineFunctions> by_height;
+  RowMajor normals{kNormals, kCosineHarmonics};
+
   CosineHarmonics() {
-    grid.resize(kCosineHarmonics, kLadderDirections);
-    normals.resize(kNormals, kCosineHarmonics);
-    const HarmonicGrid& all = harmonic_grid();
-    for_each_cosine_harmonic([&](int row, int harmonic, float factor) {
-      for (size_t i = 0; i < kLadderDirections; ++i)
-        grid(row, static_cast<Eigen::Index>(i)) =
-            all.harmonics[i * kGridHarmonics + static_cast<size_t>(harmonic)] * factor *
-            HarmonicGrid::kSolidAngle;
-      normals.col(row) = normal_harmonics().col(harmonic);
-    });
+    const RingGrid& grid = product_grid();
+    Eigen::Index column = 0;
+    for (int j = 0; j < kCosineFunctions; ++j) {
+      const auto passes = [j](int l) { return l >= order_of(j); };
+      RowMajor& rows = by_height[static_cast<size_t>(j)];
+      rows.resize(std::count_if(kCosineDegrees.begin(), kCosineDegrees.end(), passes), grid.rings);
+      Eigen::Index row = 0;
+      for (const int l : kCosineDegrees) {
+        if (!passes(l)) continue;
+        for (int ring = 0; ring < grid.rings; ++ring)
+          rows(row, ring) = cosine_factors()[static_cast<size_t>(l)] *
+                            grid.by_height[static_cast<size_t>(ring * kLightHarmonics + l * l + j)];
+        normals.col(column++) = normal_harmonics().col(index_in_ladder(l, j));
+        ++row;
+      }
+    }
   }
 };
 
@@ -136,86 +141,180 @@ const CosineHarmonics& cosine_harmonics() {
   return harmonics;
 }
 
-/// Radiance of the lobes' ladder shares on the grid: [3][kLadderDirections].
-void add_radiance(const PreparedLobe& light, Rows radiance, std::span<float> values) {
-  const HarmonicGrid& grid = harmonic_grid();
-  AnisotropicGaussian<float> lobe = light.lobe;
-  lobe.bandwidth_x = std::min(lobe.bandwidth_x, kNarrowestOnGrid);
-  lobe.bandwidth_y = std::min(lobe.bandwidth_y, kNarrowestOnGrid);
-  // The wider lobe keeps the energy.
-  const float scale = light.ladder_share * light.integral / integral(lobe);
-  batch::eval(lobe, {grid.x, grid.y, grid.z}, values);
-  const Eigen::Map<const Eigen::RowVectorXf> shape(values.data(), kLadderDirections);
-  for (int channel = 0; channel < 3; ++channel)
-    radiance.row(channel) += scale * light.color[channel] * shape;
-}
-
 /// left right, the right one's rows being of panel_width(columns).
-RowMajor multiply(const RowMajor& left, const float* right, size_t columns) {
+RowMajor multiply(const Eigen::Ref<const RowMajor>& left, const float* right, size_t columns) {
   RowMajor result(left.rows(), static_cast<Eigen::Index>(panel_width(columns)));
   dense_product(left.data(), static_cast<size_t>(left.rows()), static_cast<size_t>(left.cols()),
                 right, columns, result.data());
   return result;
 }
 
-/// Convolves radiance of harmonics `light` [3][kGridHarmonics] with zonal functions: [kNormals][3]
-/// of the first, then of the second.
-RowMajor convolve(const RowMajor& light, const Degrees& first, const Degrees& second) {
-  RowMajor scaled = RowMajor::Zero(kGridHarmonics, kPanel);
-  for (int l = 0; l < kMaxLadderBands; ++l) {
-    const auto band = light.leftCols(kGridHarmonics).middleCols(l * l, 2 * l + 1).transpose();
-    scaled.block(l * l, 0, 2 * l + 1, 3) = first[l] * band;
-    scaled.block(l * l, 3, 2 * l + 1, 3) = second[l] * band;
+/// Radiance of the lobes' ladder shares on light_grid: [3][directions].
+RowMajor radiance_of(const std::vector<PreparedLobe>& lobes) {
+  const RingGrid& grid = light_grid();
+  const auto directions = static_cast<Eigen::Index>(grid.directions());
+  RowMajor radiance = RowMajor::Zero(3, directions);
+  Eigen::RowVectorXf shape(directions);
+  for (const PreparedLobe& light : lobes) {
+    if (!(light.ladder_share > 0)) continue;
+    AnisotropicGaussian<float> lobe = light.lobe;
+    lobe.bandwidth_x = std::min(lobe.bandwidth_x, kNarrowestOnGrid);
+    lobe.bandwidth_y = std::min(lobe.bandwidth_y, kNarrowestOnGrid);
+    // The wider lobe keeps the energy.
+    const float scale = light.ladder_share * light.integral / integral(lobe);
+    batch::eval(lobe, {grid.x, grid.y, grid.z}, {shape.data(), grid.directions()});
+    for (int channel = 0; channel < 3; ++channel)
+      radiance.row(channel) += scale * light.color[channel] * shape;
   }
+  return radiance;
+}
+
+/// Harmonics of a function on light_grid: [3][kLightHarmonics].
+RowMajor harmonics_of(const RowMajor& values) {
+  const RingGrid& grid = light_grid();
+  const Eigen::Map<const RowMajor> rings(values.data(), 3 * grid.rings, grid.azimuths);
+  const RowMajor by_azimuth =
+      multiply(rings, grid.by_azimuth.data(), azimuth_functions(kLightBands));
+  const Eigen::Map<const RowMajor> by_height(grid.by_height.data(), grid.rings, kLightHarmonics);
+  RowMajor harmonics = RowMajor::Zero(3, kLightHarmonics);
+  for (int channel = 0; channel < 3; ++channel)
+    for (int ring = 0; ring < grid.rings; ++ring)
+      for (int l = 0; l < kLightBands; ++l) {
+        const int n = azimuth_functions(l + 1);
+        harmonics.row(channel).segment(l * l, n).array() +=
+            grid.solid_angle[static_cast<size_t>(ring)] *
+            by_height.row(ring).segment(l * l, n).array() *
+            by_azimuth.row(channel * grid.rings + ring).head(n).array();
+      }
+  return harmonics;
+}
+
+/// A light of harmonics [3][kLightHarmonics] on product_grid, times the cosine's functions of the
+/// azimuth and the solid angle: [rings][3][kCosineFunctions][azimuths].
+void weigh_light(const RowMajor& harmonics, std::vector<float>& weighed) {
+  const RingGrid& grid = product_grid();
+  const Eigen::Map<const RowMajor> by_height(grid.by_height.data(), grid.rings, kLightHarmonics);
+  RowMajor by_azimuth = RowMajor::Zero(3 * grid.rings, azimuth_functions(kLightBands));
+  for (int channel = 0; channel < 3; ++channel)
+    for (int ring = 0; ring < grid.rings; ++ring)
+      for (int l = 0; l < kLightBands; ++l) {
+        const int n = azimuth_functions(l + 1);
+        by_azimuth.row(channel * grid.rings + ring).head(n).array() +=
+            grid.solid_angle[static_cast<size_t>(ring)] *
+            by_height.row(ring).segment(l * l, n).array() *
+            harmonics.row(channel).segment(l * l, n).array();
+      }
+  const auto azimuths = static_cast<size_t>(grid.azimuths);
+  const RowMajor values = multiply(by_azimuth, grid.azimuth_rows.data(), azimuths);
+  const size_t row_width = panel_width(azimuths);
+  weighed.resize(static_cast<size_t>(grid.rings * kCosineRows) * azimuths);
+  float* next = weighed.data();
+  for (int ring = 0; ring < grid.rings; ++ring)
+    for (int channel = 0; channel < 3; ++channel)
+      for (size_t j = 0; j < kCosineFunctions; ++j) {
+        const auto value = values.row(channel * grid.rings + ring);
+        const float* function = grid.azimuth_rows.data() + j * row_width;
+        for (size_t a = 0; a < azimuths; ++a)
+          *next++ = value(static_cast<Eigen::Index>(a)) * function[a];
+      }
+}
+
+/// Convolves a light of harmonics [3][kLightHarmonics] with zonal functions: [kNormals][3] of the
+/// first, then of the second.
+RowMajor convolve(const RowMajor& light, const Degrees& first, const Degrees& second) {
+  RowMajor scaled = RowMajor::Zero(kOpenHarmonics, kPanel);
+  for (int l = 0; l < kMaxLadderBands; ++l)
+    for (int j = 0; j < azimuth_functions(l + 1); ++j) {
+      const auto harmonic = light.col(l * l + j).transpose();
+      scaled.row(index_in_ladder(l, j)).head(3) = first[static_cast<size_t>(l)] * harmonic;
+      scaled.row(index_in_ladder(l, j)).segment(3, 3) = second[static_cast<size_t>(l)] * harmonic;
+    }
   return multiply(normal_harmonics(), scaled.data(), 6);
 }
 
-void fill(const PreparedTransfer::Ladder& ladder, const Rows& radiance, const RowMajor& light,
-          IrradianceTable& table) {
-  const int terms = ladder.harmonics.terms;
-  const size_t columns = static_cast<size_t>(1 + terms);
-  table.terms = terms;
-  const Eigen::Index size = static_cast<Eigen::Index>(table.entry_size());
-  table.entries.assign(static_cast<size_t>(kNormals * size), 0.0f);
-  Rows entries(table.entries.data(), kNormals, size);
-  // What a bare horizon lacks is added, so that all is exact where nothing occludes.
-  const RowMajor open = convolve(light, cosine_factors(), open_factors(ladder.harmonics.bands));
-  RowMajor weighted(kCosineHarmonics, kLadderDirections);
-  for (int channel = 0; channel < 3; ++channel) {
-    weighted.array() = cosine_harmonics().grid.array().rowwise() * radiance.row(channel).array();
-    const RowMajor product = multiply(weighted, ladder.images.data(), columns);
-    const RowMajor values = multiply(cosine_harmonics().normals, product.data(), columns);
-    entries.col(IrradianceTable::kMean + channel) =
-        values.col(terms) + open.col(channel) - open.col(3 + channel);
-    entries.middleCols(
-        IrradianceTable::kTerms + channel * static_cast<Eigen::Index>(padded_terms(terms)), terms) =
-        values.leftCols(terms);
-    // Below the horizon the harmonics ring about zero, which is all that light sends there.
-    auto unshadowed = entries.col(IrradianceTable::kUnshadowed + channel);
-    unshadowed = open.col(channel);
-    if ((radiance.row(channel).array() >= 0).all()) unshadowed = unshadowed.cwiseMax(0.0f);
+/// What a bare horizon lacks is added to what comes through the ladder, so that all is exact where
+/// nothing occludes.
+void start_means(const RowMajor& light, int bands, bool is_positive, std::vector<float>& means) {
+  const RowMajor open = convolve(light, cosine_factors(), open_factors(bands));
+  means.assign(static_cast<size_t>(kNormals) * IrradianceTable::kMeans, 0.0f);
+  Rows rows(means.data(), kNormals, IrradianceTable::kMeans);
+  auto unshadowed = rows.middleCols(IrradianceTable::kUnshadowed, 3);
+  rows.middleCols(IrradianceTable::kMean, 3) = open.leftCols(3) - open.middleCols(3, 3);
+  unshadowed = open.leftCols(3);
+  // Below the horizon the harmonics ring about zero, which is all that light sends there.
+  if (is_positive) unshadowed = unshadowed.cwiseMax(0.0f);
+}
+
+/// Of a light times each image of a ladder, the harmonics that the cosine lets pass, times its
+/// factors: [3][kCosineHarmonics] rows of the images' width.
+RowMajor product_harmonics(const PreparedTransfer::Ladder& ladder,
+                           const std::vector<float>& weighed) {
+  const RingGrid& grid = product_grid();
+  const size_t columns = static_cast<size_t>(1 + ladder.harmonics.terms);
+  const size_t width = panel_width(columns);
+  const auto rings = static_cast<size_t>(grid.rings), azimuths = static_cast<size_t>(grid.azimuths);
+  std::vector<float> by_azimuth(kCosineRows * rings * width);  // [channel, function][ring]
+  for (size_t ring = 0; ring < rings; ++ring)
+    dense_product(weighed.data() + ring * kCosineRows * azimuths, kCosineRows, azimuths,
+                  ladder.images.data() + ring * azimuths * width, columns,
+                  by_azimuth.data() + ring * width, rings * width);
+  RowMajor harmonics(3 * kCosineHarmonics, static_cast<Eigen::Index>(width));
+  float* next = harmonics.data();
+  for (size_t i = 0; i < kCosineRows; ++i) {
+    const RowMajor& by_height = cosine_harmonics().by_height[i % kCosineFunctions];
+    dense_product(by_height.data(), static_cast<size_t>(by_height.rows()), rings,
+                  by_azimuth.data() + i * rings * width, columns, next);
+    next += static_cast<size_t>(by_height.rows()) * width;
   }
+  return harmonics;
 }
 
 }  // namespace
 
-void make_irradiance_tables(const PreparedTransfer& transfer, PreparedLights& lights) {
-  lights.tables.resize(0);
-  const bool any = std::any_of(lights.lobes.begin(), lights.lobes.end(),
-                               [](const PreparedLobe& light) { return light.ladder_share > 0; });
-  if (!any || transfer.ladders.empty()) return;
-  lights.scratch.assign(4 * kLadderDirections, 0.0f);
-  Rows radiance(lights.scratch.data(), 3, kLadderDirections);
-  for (const PreparedLobe& light : lights.lobes)
-    if (light.ladder_share > 0)
-      add_radiance(light, radiance,
-                   std::span(lights.scratch).subspan(3 * kLadderDirections, kLadderDirections));
-  const HarmonicGrid& grid = harmonic_grid();
-  const RowMajor light =
-      multiply(radiance, grid.harmonics.data(), kGridHarmonics) * HarmonicGrid::kSolidAngle;
-  lights.tables.resize(transfer.ladders.size());
-  for (size_t i = 0; i < transfer.ladders.size(); ++i)
-    fill(transfer.ladders[i], radiance, light, lights.tables[i]);
+void begin_irradiance_tables(const PreparedTransfer& transfer, PreparedLights& lights) {
+  const auto is_wide = [](const PreparedLobe& light) { return light.ladder_share > 0; };
+  const bool any = std::any_of(lights.lobes.begin(), lights.lobes.end(), is_wide);
+  lights.tables.resize(any ? transfer.ladders.size() : 0);
+  if (lights.tables.empty()) return;
+  const bool is_positive = std::all_of(
+      lights.lobes.begin(), lights.lobes.end(),
+      [&](const PreparedLobe& light) { return !is_wide(light) || (light.color >= 0).all(); });
+  const RowMajor light = harmonics_of(radiance_of(lights.lobes));
+  weigh_light(light, lights.scratch);
+  for (size_t i = 0; i < lights.tables.size(); ++i) {
+    const int bands = transfer.ladders[i].harmonics.bands;
+    if (i > 0 && bands == transfer.ladders[0].harmonics.bands)
+      lights.tables[i].means = lights.tables[0].means;
+    else
+      start_means(light, bands, is_positive, lights.tables[i].means);
+  }
+}
+
+void finish_irradiance_table(const PreparedTransfer& transfer, size_t ladder,
+                             PreparedLights& lights) {
+  IrradianceTable& table = lights.tables[ladder];
+  table.terms = transfer.ladders[ladder].harmonics.terms;
+  const auto terms = static_cast<size_t>(table.terms), columns = 1 + terms;
+  const size_t width = panel_width(columns), padded = padded_terms(table.terms);
+  const RowMajor harmonics = product_harmonics(transfer.ladders[ladder], lights.scratch);
+  table.entries.assign(kNormals * table.entry_size(), 0.0f);
+  constexpr size_t kTogether = 64;  // values of so many normals stay in the nearest cache
+  std::vector<float> values(kTogether * width);
+  for (size_t first = 0; first < kNormals; first += kTogether) {
+    const size_t count = std::min(kTogether, kNormals - first);
+    for (size_t channel = 0; channel < 3; ++channel) {
+      dense_product(cosine_harmonics().normals.data() + first * kCosineHarmonics, count,
+                    kCosineHarmonics, harmonics.data() + channel * kCosineHarmonics * width,
+                    columns, values.data());
+      for (size_t i = 0; i < count; ++i) {
+        const float* value = values.data() + i * width;
+        std::copy_n(value, terms,
+                    table.entries.data() + (first + i) * table.entry_size() + channel * padded);
+        table.means[(first + i) * IrradianceTable::kMeans + IrradianceTable::kMean + channel] +=
+            value[terms];
+      }
+    }
+  }
 }
 
 }  // namespace burnish

@@ -117,7 +117,7 @@ void mix_ladder_shares(const PreparedTransfer& transfer, const ShadingBlock<T>& 
 template <class D, class T = hn::TFromD<D>>
 HWY_NOINLINE void add_light_irradiance(D d, const PreparedTransfer& transfer,
                                        const ShadingOptions& options, size_t terms,
-                                       const ShadingBlock<T>& block, const BlockLight<T>& light,
+                                       ShadingBlock<T>& block, const BlockLight<T>& light,
                                        BlockRgb<T>& irradiance) {
   using V = hn::VFromD<D>;
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
@@ -138,7 +138,11 @@ HWY_NOINLINE void add_light_irradiance(D d, const PreparedTransfer& transfer,
       hn::Store(local.bandwidth_y, d, lit.bandwidth_y.data() + i);
     }
   BlockBoundaries<T> boundaries;
-  if (occluded) find_boundaries(d, transfer, block, terms, lit.z, boundaries);
+  if (occluded) {
+    BlockFootprints<T> footprints;
+    start_lookups(d, transfer, block, terms, lit.z, footprints);
+    find_boundaries(d, transfer, block, terms, lit.z, footprints, boundaries);
+  }
   BlockArray<T> share;
   for (size_t i = 0; i < block.count; i += hn::Lanes(d)) {
     const AnisotropicGaussian<V> lobe = load(d, lit, i);
@@ -185,9 +189,9 @@ HWY_NOINLINE void reflect_light(D d, size_t count, const BlockLight<T>& light,
 /// Lights of one kind: to the irradiance, if `diffuse`, and to what placed slices reflect.
 template <class D, class Light, class T = hn::TFromD<D>>
 HWY_INLINE void add_lights(D d, const std::vector<Light>& sources, const PreparedTransfer& transfer,
-                           const ShadingOptions& options, size_t terms,
-                           const ShadingBlock<T>& block, bool diffuse, const SliceBlock<T>* slices,
-                           size_t slice_count, BlockRgb<T>& irradiance, BlockRgb<T>& reflected) {
+                           const ShadingOptions& options, size_t terms, ShadingBlock<T>& block,
+                           bool diffuse, const SliceBlock<T>* slices, size_t slice_count,
+                           BlockRgb<T>& irradiance, BlockRgb<T>& reflected) {
   BlockLight<T> light;
   for (const Light& source : sources) {
     if (!find_light(source, block, light)) continue;

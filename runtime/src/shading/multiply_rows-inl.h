@@ -7,6 +7,7 @@
 #define BURNISH_SHADING_MULTIPLY_ROWS_INL_H_
 #endif
 
+#include <cstdint>
 #include <type_traits>
 
 #include <hwy/highway.h>
@@ -23,6 +24,20 @@ HWY_INLINE hn::VFromD<D> load_floats(D d, const float* values) {
     return hn::LoadU(d, values);
   } else {
     return hn::PromoteTo(d, hn::LoadU(hn::Rebind<float, D>(), values));
+  }
+}
+
+/// The same of numbers of IEEE 754 binary16.
+template <class D>
+HWY_INLINE hn::VFromD<D> load_floats(D d, const std::uint16_t* values) {
+  const hn::Rebind<float, D> df;
+  const hn::Rebind<hwy::float16_t, D> dh;
+  const auto floats =
+      hn::PromoteTo(df, hn::LoadU(dh, reinterpret_cast<const hwy::float16_t*>(values)));
+  if constexpr (std::is_same_v<hn::TFromD<D>, float>) {
+    return floats;
+  } else {
+    return hn::PromoteTo(d, floats);
   }
 }
 

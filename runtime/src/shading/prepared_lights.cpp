@@ -37,6 +37,13 @@ float lit_bandwidth(const AnisotropicGaussian<float>& lobe) {
   return std::sqrt(lobe.bandwidth_x + kCosine) * std::sqrt(lobe.bandwidth_y + kCosine);
 }
 
+float number_of(const PreparedTransfer::Basis& basis, size_t index) {
+  if (basis.eigen16.empty()) return basis.eigen32[index];
+  Eigen::half_impl::__half_raw half;
+  half.x = basis.eigen16[index];
+  return Eigen::half_impl::half_to_float(half);
+}
+
 void add_boundary(const PreparedTransfer& transfer, const PreparedTransfer::Basis& basis, int terms,
                   const PreparedLobe& light, size_t lights, size_t column,
                   LobeBoundaries& boundaries) {
@@ -55,32 +62,27 @@ void add_boundary(const PreparedTransfer& transfer, const PreparedTransfer::Basi
     for (size_t j = 0; j < 3; ++j) {
       boundaries.mean[column + j] += weight[j] * basis.mean[texel];
       for (size_t k = 0; k < static_cast<size_t>(terms); ++k)
-        boundaries.rows[k * width + column + j] += weight[j] * basis.eigen[texel * stride + k];
+        boundaries.rows[k * width + column + j] += weight[j] * number_of(basis, texel * stride + k);
     }
   }
 }
 
-void make_boundaries(const PreparedTransfer& transfer, const ShadingOptions& options,
+void make_boundaries(const PreparedTransfer& transfer, const ShadingOptions& options, size_t basis,
                      PreparedLights& lights) {
-  lights.boundaries.resize(lights.narrow.empty() ? 0 : transfer.bases.size());
   const int terms = options.terms > 0 ? std::min(options.terms, transfer.terms) : transfer.terms;
-  const size_t columns = 3 * lights.narrow.size();
-  for (size_t b = 0; b < lights.boundaries.size(); ++b) {
-    LobeBoundaries& boundaries = lights.boundaries[b];
-    boundaries.mean.assign(columns, 0.0f);
-    boundaries.rows.assign(static_cast<size_t>(terms) * boundary_columns(lights.narrow.size()),
-                           0.0f);
-    for (size_t i = 0; i < lights.narrow.size(); ++i)
-      add_boundary(transfer, transfer.bases[b], terms,
-                   lights.lobes[static_cast<size_t>(lights.narrow[i])], lights.narrow.size(), 3 * i,
-                   boundaries);
-  }
+  const size_t count = lights.narrow.size();
+  LobeBoundaries& boundaries = lights.boundaries[basis];
+  boundaries.mean.assign(3 * count, 0.0f);
+  boundaries.rows.assign(static_cast<size_t>(terms) * boundary_columns(count), 0.0f);
+  for (size_t i = 0; i < count; ++i)
+    add_boundary(transfer, transfer.bases[basis], terms,
+                 lights.lobes[static_cast<size_t>(lights.narrow[i])], count, 3 * i, boundaries);
 }
 
 }  // namespace
 
-void prepare_lights(const LightRig& rig, const PreparedTransfer& transfer,
-                    const ShadingOptions& options, PreparedLights& lights) {
+void begin_lights(const LightRig& rig, const PreparedTransfer& transfer,
+                  const ShadingOptions& options, PreparedLights& lights) {
   copy_lit(rig.directionals, "directional light", &DirectionalLight::irradiance,
            lights.directionals);
   copy_lit(rig.spheres, "sphere light", &SphereLight::radiance, lights.spheres);
@@ -99,12 +101,26 @@ void prepare_lights(const LightRig& rig, const PreparedTransfer& transfer,
     lobe.integral = integral(lobe.lobe, options.integral);
     lobe.moments = asg_moments(light.lobe.bandwidth_x, light.lobe.bandwidth_y);
     if (ladder)
-      lobe.ladder_share = ladder_weight(lit_bandwidth(lobe.lobe), transfer.ladder_crossover);
+      lobe.ladder_share =
+          ladder_weight(lit_bandwidth(lobe.lobe), options.ladder_reach * transfer.ladder_crossover);
     if (lobe.ladder_share < 1) lights.narrow.push_back(static_cast<int>(lights.lobes.size()));
     lights.lobes.push_back(lobe);
   }
-  make_boundaries(transfer, options, lights);
-  make_irradiance_tables(transfer, lights);
+  lights.boundaries.resize(lights.narrow.empty() ? 0 : transfer.bases.size());
+  begin_irradiance_tables(transfer, lights);
+}
+
+void finish_lights(const PreparedTransfer& transfer, const ShadingOptions& options, size_t basis,
+                   PreparedLights& lights) {
+  if (basis < lights.boundaries.size()) make_boundaries(transfer, options, basis, lights);
+  if (basis < lights.tables.size()) finish_irradiance_table(transfer, basis, lights);
+}
+
+void prepare_lights(const LightRig& rig, const PreparedTransfer& transfer,
+                    const ShadingOptions& options, PreparedLights& lights) {
+  begin_lights(rig, transfer, options, lights);
+  for (size_t basis = 0; basis < transfer.bases.size(); ++basis)
+    finish_lights(transfer, options, basis, lights);
 }
 
 PreparedLights prepare_lights(const LightRig& rig, const PreparedTransfer& transfer,

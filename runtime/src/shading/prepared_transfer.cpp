@@ -4,36 +4,47 @@
 #include <cmath>
 
 #include "shading/dense_product.h"
-#include "visibility/harmonic_grid.h"
+#include "shading/ring_grid.h"
 
 namespace burnish {
 namespace {
 
 using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-PreparedTransfer::Basis pad(const SsdfBasis& basis) {
+std::uint16_t float16_of(float value) { return Eigen::half_impl::float_to_half_rtne(value).x; }
+
+PreparedTransfer::Basis pad(const SsdfBasis& basis, RowFormat format) {
   PreparedTransfer::Basis padded;
   padded.mean = basis.mean;
   const size_t terms = static_cast<size_t>(basis.terms), stride = padded_terms(basis.terms);
-  padded.eigen.assign(basis.mean.size() * stride, 0.0f);
-  for (size_t texel = 0; texel < basis.mean.size(); ++texel)
-    std::copy_n(basis.eigen.data() + texel * terms, terms, padded.eigen.data() + texel * stride);
+  const auto copy = [&](auto& eigen, const auto& convert) {
+    eigen.resize(basis.mean.size() * stride);
+    for (size_t texel = 0; texel < basis.mean.size(); ++texel)
+      std::transform(basis.eigen.data() + texel * terms, basis.eigen.data() + (texel + 1) * terms,
+                     eigen.data() + texel * stride, convert);
+  };
+  if (format == RowFormat::float16)
+    copy(padded.eigen16, float16_of);
+  else
+    copy(padded.eigen32, [](float value) { return value; });
   return padded;
 }
 
 PreparedTransfer::Ladder draw(const LadderBasis& basis) {
   const int bands = std::min(basis.bands, kMaxLadderBands);
   const Eigen::Index count = Eigen::Index{bands} * bands, terms = basis.terms;
-  const HarmonicGrid& grid = harmonic_grid();
-  const Eigen::Map<const RowMajor, 0, Eigen::OuterStride<>> harmonics(
-      grid.harmonics.data(), kLadderDirections, count, Eigen::OuterStride<>(kGridHarmonics));
+  const RingGrid& grid = product_grid();
+  const auto directions = static_cast<Eigen::Index>(grid.directions());
+  RowMajor harmonics(directions, count);
+  for (Eigen::Index i = 0; i < directions; ++i)
+    eval_harmonics(bands, {grid.x[i], grid.y[i], grid.z[i]},
+                   {harmonics.row(i).data(), static_cast<size_t>(count)});
   const Eigen::Map<const RowMajor> eigen(basis.eigen.data(), count, terms);
   const Eigen::Map<const Eigen::VectorXf> mean(basis.mean.data(), count);
   PreparedTransfer::Ladder ladder;
   const size_t width = panel_width(static_cast<size_t>(1 + terms));
-  ladder.images.assign(kLadderDirections * width, 0.0f);
-  Eigen::Map<RowMajor> images(ladder.images.data(), kLadderDirections,
-                              static_cast<Eigen::Index>(width));
+  ladder.images.assign(grid.directions() * width, 0.0f);
+  Eigen::Map<RowMajor> images(ladder.images.data(), directions, static_cast<Eigen::Index>(width));
   images.leftCols(terms) = harmonics * eigen;
   images.col(terms) = harmonics * mean;
   ladder.harmonics = basis;
@@ -77,17 +88,19 @@ PreparedTransfer prepare_transfer(const Transfer& transfer, RowFormat format) {
   prepared.resolution = transfer.bases.front().resolution;
   prepared.amplitude_rad = transfer.bases.front().amplitude_rad;
   prepared.ladder_crossover = transfer.ladder_crossover;
-  for (const SsdfBasis& basis : transfer.bases) prepared.bases.push_back(pad(basis));
+  const bool half = format == RowFormat::float16 && fits_float16(transfer.coefficients) &&
+                    fits_float16(transfer.ladder_coefficients) &&
+                    std::all_of(transfer.bases.begin(), transfer.bases.end(),
+                                [](const SsdfBasis& basis) { return fits_float16(basis.eigen); });
+  prepared.format = half ? RowFormat::float16 : RowFormat::float32;
+  for (const SsdfBasis& basis : transfer.bases)
+    prepared.bases.push_back(pad(basis, prepared.format));
   for (const LadderBasis& basis : transfer.ladder_bases) prepared.ladders.push_back(draw(basis));
   const size_t count = transfer.vertex_count() * prepared.row_size();
-  const bool half = format == RowFormat::float16 && fits_float16(transfer.coefficients) &&
-                    fits_float16(transfer.ladder_coefficients);
-  prepared.format = half ? RowFormat::float16 : RowFormat::float32;
   if (half) {
     prepared.rows16.resize(count);
-    for_each_coefficient(transfer, [&](size_t i, float value) {
-      prepared.rows16[i] = Eigen::half_impl::float_to_half_rtne(value).x;
-    });
+    for_each_coefficient(transfer,
+                         [&](size_t i, float value) { prepared.rows16[i] = float16_of(value); });
   } else {
     prepared.rows32.resize(count);
     for_each_coefficient(transfer, [&](size_t i, float value) { prepared.rows32[i] = value; });

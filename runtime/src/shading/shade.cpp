@@ -71,6 +71,15 @@ void sort_by(std::span<size_t> index, const Key& key) {
   std::copy_n(sorted.begin(), index.size(), index.begin());
 }
 
+void fetch_row(const PreparedTransfer& transfer, size_t vertex, Fetcher& fetcher) {
+  const size_t size = transfer.row_size();
+  if (size == 0) return;
+  if (transfer.format == RowFormat::float16)
+    fetcher.add(transfer.rows16.data() + vertex * size, size * sizeof(std::uint16_t));
+  else
+    fetcher.add(transfer.rows32.data() + vertex * size, size * sizeof(float));
+}
+
 /// Shades the vertices first + index[..] of one material.
 void shade_group(const PreparedTransfer& transfer, const Lighting& lighting,
                  const PreparedMaterial& material, const Vector3f& eye,
@@ -83,6 +92,8 @@ void shade_group(const PreparedTransfer& transfer, const Lighting& lighting,
     const size_t start = done;
     for (; done < index.size() && has_room(transfer, block); ++done)
       add_vertex(transfer, first + index[done], block);
+    for (size_t next = done; next < std::min(done + kBlock, index.size()); ++next)
+      fetch_row(transfer, first + index[next], block.fetcher);
     HWY_DYNAMIC_DISPATCH(shade_vertex_block)
     (transfer, material, lighting, options, eye, block, result);
     for (size_t i = 0; i < block.count; ++i) radiance[index[start + i]] = rgb_of(result, i);

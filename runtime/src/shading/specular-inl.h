@@ -37,23 +37,28 @@ HWY_INLINE Vector3<hn::VFromD<D>> to_world(D d, const ShadingBlock<T>& block,
           hn::MulAdd(v.x, x.z, hn::MulAdd(v.y, y.z, hn::Mul(v.z, z.z)))};
 }
 
-/// Turns the lobes of a slice to the world, and takes off their weight what is hidden of each.
-/// Whether anything is left.
+/// Turns the lobes of a slice to the world. Whether any point reflects anything.
 template <class D, class T = hn::TFromD<D>>
-HWY_NOINLINE bool place_slice(D d, const PreparedTransfer& transfer, SpecularForm form,
-                              const ShadingOptions& options, size_t terms,
-                              const ShadingBlock<T>& block, SliceBlock<T>& slice) {
-  using V = hn::VFromD<D>;
-  V most = hn::Zero(d);
+HWY_NOINLINE bool turn_slice(D d, const ShadingBlock<T>& block, SliceBlock<T>& slice) {
+  auto most = hn::Zero(d);
   for (size_t i = 0; i < block.count; i += hn::Lanes(d)) {
     store(d, to_world(d, block, load(d, slice.lobes.x, i), i), slice.lobes.x, i);
     store(d, to_world(d, block, load(d, slice.lobes.z, i), i), slice.lobes.z, i);
     for (size_t c = 0; c < 3; ++c) most = hn::Max(most, hn::Load(d, slice.weight[c].data() + i));
   }
-  if (hn::AllTrue(d, hn::Le(most, hn::Zero(d)))) return false;
+  return !hn::AllTrue(d, hn::Le(most, hn::Zero(d)));
+}
+
+/// Takes off the weight of a turned slice's lobes what is hidden of each; footprints are those of
+/// start_lookups.
+template <class D, class T = hn::TFromD<D>>
+HWY_NOINLINE void hide_slice(D d, const PreparedTransfer& transfer, SpecularForm form,
+                             const ShadingOptions& options, size_t terms, ShadingBlock<T>& block,
+                             const BlockFootprints<T>& footprints, SliceBlock<T>& slice) {
+  using V = hn::VFromD<D>;
   const bool occluded = !transfer.bases.empty();
   BlockBoundaries<T> boundaries;
-  if (occluded) find_boundaries(d, transfer, block, terms, slice.lobes.z, boundaries);
+  if (occluded) find_boundaries(d, transfer, block, terms, slice.lobes.z, footprints, boundaries);
   for (size_t i = 0; i < block.count; i += hn::Lanes(d)) {
     const AnisotropicGaussian<V> lobe = load(d, slice.lobes, i);
     const Vector3<V> normal = load(d, block.normal, i);
@@ -69,18 +74,17 @@ HWY_NOINLINE bool place_slice(D d, const PreparedTransfer& transfer, SpecularFor
       T* weight = slice.weight[c].data() + i;
       hn::Store(hn::Mul(visible, hn::Load(d, weight)), d, weight);
     }
-    if (form == SpecularForm::peak && options.integral == AsgIntegral::fast)
-      hn::Store(asg_integral_fast(d, lobe.bandwidth_x, lobe.bandwidth_y), d,
-                slice.integral.data() + i);
   }
-  return true;
 }
 
-/// Integrals of the environment's lobes times the slice's.
+/// Integrals of the environment's lobes times the slice's. It reads hardly any memory, and so is
+/// the time to have other memory on its way.
 template <class D, class T = hn::TFromD<D>>
 HWY_NOINLINE void see_lobes(D d, const PreparedLights& lights, size_t count,
-                            const BlockLobes<T>& lobes, BlockRgb<T>& seen) {
+                            const BlockLobes<T>& lobes, Fetcher& fetcher, BlockRgb<T>& seen) {
   using V = hn::VFromD<D>;
+  const size_t steps = std::max<size_t>(count / hn::Lanes(d) * lights.lobes.size(), 1);
+  const size_t fetched = fetcher.waiting() / steps + 1;
   for (size_t i = 0; i < count; i += hn::Lanes(d)) {
     const AnisotropicGaussian<V> lobe = load(d, lobes, i);
     V sum[3] = {hn::Zero(d), hn::Zero(d), hn::Zero(d)};
@@ -88,6 +92,7 @@ HWY_NOINLINE void see_lobes(D d, const PreparedLights& lights, size_t count,
       const AnisotropicGaussian<V> other = {
           set(d, light.lobe.frame.x), set(d, light.lobe.frame.y), set(d, light.lobe.frame.z),
           hn::Set(d, light.lobe.bandwidth_x), hn::Set(d, light.lobe.bandwidth_y)};
+      fetcher.fetch(fetched);
       const V product = asg_inner_product(d, other, lobe);
       for (int c = 0; c < 3; ++c) sum[c] = hn::MulAdd(hn::Set(d, light.color[c]), product, sum[c]);
     }
@@ -95,34 +100,51 @@ HWY_NOINLINE void see_lobes(D d, const PreparedLights& lights, size_t count,
   }
 }
 
-/// Adds what a placed slice reflects of the distant environment.
+/// The filtered map under the slice's lobes, where they weigh anything: the integral of the
+/// product.
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void reflect_environment(D d, const Lighting& lighting, const ShadingOptions& options,
-                                    size_t count, const SliceBlock<T>& slice,
+HWY_NOINLINE void see_map(D d, const PrefilteredEnvironment& environment,
+                          const ShadingOptions& options, size_t count, const SliceBlock<T>& slice,
+                          BlockRgb<T>& seen) {
+  BlockArray<T> active = {};
+  for (size_t i = 0; i < count; i += hn::Lanes(d))
+    hn::Store(hn::Max(hn::Load(d, slice.weight[0].data() + i),
+                      hn::Max(hn::Load(d, slice.weight[1].data() + i),
+                              hn::Load(d, slice.weight[2].data() + i))),
+              d, active.data() + i);
+  eval_prefiltered(d, environment, count, slice.lobes, active, options.environment_taps, seen);
+  for (size_t i = 0; i < count; i += hn::Lanes(d))
+    for (BlockArray<T>& channel : seen)
+      hn::Store(hn::Mul(hn::Load(d, channel.data() + i), hn::Load(d, slice.integral.data() + i)), d,
+                channel.data() + i);
+}
+
+/// Adds what a turned slice reflects of the distant environment, and takes off its weight what is
+/// hidden.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void reflect_environment(D d, const PreparedTransfer& transfer, SpecularForm form,
+                                    const Lighting& lighting, const ShadingOptions& options,
+                                    size_t terms, ShadingBlock<T>& block, SliceBlock<T>& slice,
                                     BlockRgb<T>& reflected) {
+  if (form == SpecularForm::peak && options.integral == AsgIntegral::fast)
+    for (size_t i = 0; i < block.count; i += hn::Lanes(d))
+      hn::Store(asg_integral_fast(d, hn::Load(d, slice.lobes.bandwidth_x.data() + i),
+                                  hn::Load(d, slice.lobes.bandwidth_y.data() + i)),
+                d, slice.integral.data() + i);
+  BlockFootprints<T> footprints;
+  if (!transfer.bases.empty()) start_lookups(d, transfer, block, terms, slice.lobes.z, footprints);
   BlockRgb<T> seen;
-  if (lighting.environment) {
-    BlockArray<T> active;
-    for (size_t i = 0; i < count; i += hn::Lanes(d))
-      hn::Store(hn::Max(hn::Load(d, slice.weight[0].data() + i),
-                        hn::Max(hn::Load(d, slice.weight[1].data() + i),
-                                hn::Load(d, slice.weight[2].data() + i))),
-                d, active.data() + i);
-    eval_prefiltered(d, *lighting.environment, count, slice.lobes, active, options.environment_taps,
-                     seen);
-  } else {
-    see_lobes(d, *lighting.lights, count, slice.lobes, seen);
-  }
-  for (size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const auto integral =
-        lighting.environment ? hn::Load(d, slice.integral.data() + i) : hn::Set(d, T(1));
+  if (!lighting.environment)
+    see_lobes(d, *lighting.lights, block.count, slice.lobes, block.fetcher, seen);
+  hide_slice(d, transfer, form, options, terms, block, footprints, slice);
+  if (lighting.environment) see_map(d, *lighting.environment, options, block.count, slice, seen);
+  for (size_t i = 0; i < block.count; i += hn::Lanes(d))
     for (size_t c = 0; c < 3; ++c) {
       T* sum = reflected[c].data() + i;
-      const auto light = hn::Mul(integral, hn::Load(d, seen[c].data() + i));
-      hn::Store(hn::MulAdd(hn::Load(d, slice.weight[c].data() + i), light, hn::Load(d, sum)), d,
-                sum);
+      hn::Store(hn::MulAdd(hn::Load(d, slice.weight[c].data() + i), hn::Load(d, seen[c].data() + i),
+                           hn::Load(d, sum)),
+                d, sum);
     }
-  }
 }
 
 }  // namespace HWY_NAMESPACE

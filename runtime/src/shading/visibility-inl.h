@@ -119,13 +119,13 @@ HWY_INLINE void sum_lanes(D d, const V (&v)[4], T (&sums)[4]) {
 #endif
 
 /// Products of a row of coefficients with rows of a basis at four texels.
-template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void products_at(D d, const T* coefficients, const float* basis, size_t stride,
+template <class D, class Number, class T = hn::TFromD<D>>
+HWY_INLINE void products_at(D d, const T* coefficients, const Number* basis, size_t stride,
                             size_t size, const size_t (&texel)[4], T (&products)[4]) {
-  const float* a = basis + texel[0] * stride;
-  const float* b = basis + texel[1] * stride;
-  const float* c = basis + texel[2] * stride;
-  const float* e = basis + texel[3] * stride;
+  const Number* a = basis + texel[0] * stride;
+  const Number* b = basis + texel[1] * stride;
+  const Number* c = basis + texel[2] * stride;
+  const Number* e = basis + texel[3] * stride;
   using V = hn::VFromD<D>;
   V sum[4] = {hn::Zero(d), hn::Zero(d), hn::Zero(d), hn::Zero(d)};
   for (size_t k = 0; k < size; k += hn::Lanes(d)) {
@@ -144,32 +144,48 @@ struct BlockSsdf {
   BlockArray<T> value, by_u, by_v;
 };
 
-template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void read_ssdf(D d, const PreparedTransfer& transfer, const ShadingBlock<T>& block,
+HWY_INLINE const std::uint16_t* eigenvectors(const PreparedTransfer::Basis& basis, std::uint16_t) {
+  return basis.eigen16.data();
+}
+HWY_INLINE const float* eigenvectors(const PreparedTransfer::Basis& basis, float) {
+  return basis.eigen32.data();
+}
+
+/// Ranges of memory that read_ssdf has on their way while it reads a row: of two rows.
+inline constexpr size_t kFetchedARow = 4;
+
+/// What read_ssdf reads of the bases.
+template <class Number, class T>
+HWY_INLINE void fetch_ssdf(const PreparedTransfer& transfer, const ShadingBlock<T>& block,
+                           size_t terms, const BlockFootprints<T>& footprints, size_t row,
+                           Fetcher& fetcher) {
+  const size_t stride = padded_terms(transfer.terms), point = block.row[row].point;
+  size_t texel[4];
+  footprint_texels(footprints.x[point], footprints.y[point], transfer.resolution, texel);
+  const Number* eigen = eigenvectors(transfer.bases[block.row[row].basis], Number());
+  if (texel[1] == texel[0] + 1 && texel[3] == texel[2] + 1) {
+    fetcher.add(eigen + texel[0] * stride, (stride + terms) * sizeof(Number));
+    fetcher.add(eigen + texel[2] * stride, (stride + terms) * sizeof(Number));
+  } else {
+    for (const size_t t : texel) fetcher.add(eigen + t * stride, terms * sizeof(Number));
+  }
+}
+
+/// `Number`: that of the transfer's format.
+template <class Number, class D, class T = hn::TFromD<D>>
+HWY_INLINE void read_ssdf(D d, const PreparedTransfer& transfer, ShadingBlock<T>& block,
                           size_t terms, const BlockFootprints<T>& footprints, BlockSsdf<T>& ssdf) {
   const size_t stride = padded_terms(transfer.terms);
   for (size_t i = 0; i < block.count; ++i) ssdf.value[i] = ssdf.by_u[i] = ssdf.by_v[i] = 0;
-  // The bases are larger than the near caches: what the next rows read is fetched meanwhile.
-  constexpr size_t kAhead = 2;
-  const auto fetch = [&](size_t r) HWY_ATTR {
-    if (r >= block.row_count) return;
-    const VisibilityRow<T>& row = block.row[r];
-    size_t texel[4];
-    footprint_texels(footprints.x[row.point], footprints.y[row.point], transfer.resolution, texel);
-    const float* eigen = transfer.bases[row.basis].eigen.data();
-    for (const size_t t : texel)
-      for (size_t k = 0; k < terms; k += 16) hwy::Prefetch(eigen + t * stride + k);
-  };
-  for (size_t r = 0; r < kAhead; ++r) fetch(r);
   for (size_t r = 0; r < block.row_count; ++r) {
-    fetch(r + kAhead);
     const VisibilityRow<T>& row = block.row[r];
     const PreparedTransfer::Basis& basis = transfer.bases[row.basis];
     const size_t i = row.point;
     size_t texel[4];
     footprint_texels(footprints.x[i], footprints.y[i], transfer.resolution, texel);
     T v[4];
-    products_at(d, row.ssdf, basis.eigen.data(), stride, terms, texel, v);
+    block.fetcher.fetch(kFetchedARow);
+    products_at(d, row.ssdf, eigenvectors(basis, Number()), stride, terms, texel, v);
     for (int j = 0; j < 4; ++j) v[j] += static_cast<T>(basis.mean[texel[j]]);
     const T fx = footprints.fraction_x[i], fy = footprints.fraction_y[i];
     const T upper = v[0] + fx * (v[1] - v[0]), lower = v[2] + fx * (v[3] - v[2]);
@@ -231,15 +247,30 @@ HWY_INLINE Vector3<V> unit_gradient(D d, const Vector3<V>& gradient, float least
   return {hn::Mul(gradient.x, scale), hn::Mul(gradient.y, scale), hn::Mul(gradient.z, scale)};
 }
 
-/// The boundary, or, without a basis, the horizon, in a direction of each point.
+/// Where the SSDFs are looked up in a direction of each point, of which all memory is on its way.
 template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void find_boundaries(D d, const PreparedTransfer& transfer, const ShadingBlock<T>& block,
-                                size_t terms, const BlockVector3<T>& directions,
-                                BlockBoundaries<T>& boundaries) {
-  BlockFootprints<T> footprints;
+HWY_INLINE void start_lookups(D d, const PreparedTransfer& transfer, ShadingBlock<T>& block,
+                              size_t terms, const BlockVector3<T>& directions,
+                              BlockFootprints<T>& footprints) {
   find_footprints(d, block.count, directions, transfer.resolution, footprints);
+  for (size_t r = 0; r < block.row_count; ++r)
+    if (transfer.format == RowFormat::float16)
+      fetch_ssdf<std::uint16_t>(transfer, block, terms, footprints, r, block.fetcher);
+    else
+      fetch_ssdf<float>(transfer, block, terms, footprints, r, block.fetcher);
+}
+
+/// The boundary in a direction of each point, at the footprints of start_lookups.
+template <class D, class T = hn::TFromD<D>>
+HWY_INLINE void find_boundaries(D d, const PreparedTransfer& transfer, ShadingBlock<T>& block,
+                                size_t terms, const BlockVector3<T>& directions,
+                                const BlockFootprints<T>& footprints,
+                                BlockBoundaries<T>& boundaries) {
   BlockSsdf<T> ssdf;
-  read_ssdf(d, transfer, block, terms, footprints, ssdf);
+  if (transfer.format == RowFormat::float16)
+    read_ssdf<std::uint16_t>(d, transfer, block, terms, footprints, ssdf);
+  else
+    read_ssdf<float>(d, transfer, block, terms, footprints, ssdf);
   // Of a slope of 1e-4, below which its direction is rounding noise; half a texel's is what the
   // gradient is in.
   const float least = 2e-4f / static_cast<float>(transfer.resolution);

@@ -167,6 +167,9 @@ struct AnisotropicGaussian {
   V bandwidth_x, bandwidth_y;
 };
 
+/// Products of lobes this far apart are 0: e to its power is below 1e-17 of one of lobes in line.
+inline constexpr float kFarExponent = 40;
+
 /// inner_product_closed_form, see burnish/sphere/asg_product.h.
 template <class D, class V>
 HWY_INLINE V asg_inner_product(D d, const AnisotropicGaussian<V>& a,
@@ -183,7 +186,7 @@ HWY_INLINE V asg_inner_product(D d, const AnisotropicGaussian<V>& a,
   const V dax = dot(between, a.x), day = dot(between, a.y);
   const V dbx = hn::Neg(dot(between, b.x)), dby = hn::Neg(dot(between, b.y));
   // The axes of b, turned to a's tangent plane.
-  const V turn = hn::Div(one, hn::Max(hn::Add(one, cosine), hn::Set(d, 1e-6f)));
+  const V turn = reciprocal(d, hn::Max(hn::Add(one, cosine), hn::Set(d, 1e-6f)));
   const V turned_x = hn::Mul(dbx, turn), turned_y = hn::Mul(dby, turn);
   const V xx = hn::NegMulAdd(turned_x, dax, dot(b.x, a.x));
   const V xy = hn::NegMulAdd(turned_x, day, dot(b.x, a.y));
@@ -195,18 +198,23 @@ HWY_INLINE V asg_inner_product(D d, const AnisotropicGaussian<V>& a,
   const V det = hn::Add(hn::Add(det_a, det_b), hn::MulAdd(ay, b_xx, hn::Mul(ax, b_yy)));
   const V along_a = hn::MulAdd(ax, hn::Mul(dax, dax), hn::Mul(ay, hn::Mul(day, day)));
   const V along_b = hn::MulAdd(bx, hn::Mul(dbx, dbx), hn::Mul(by, hn::Mul(dby, dby)));
-  const V exponent = hn::IfThenElseZero(
-      hn::Gt(det, zero), hn::Div(hn::MulAdd(det_b, along_a, hn::Mul(det_a, along_b)), det));
+  const V exponent = hn::Mul(
+      scale, hn::IfThenElseZero(hn::Gt(det, zero),
+                                hn::Div(hn::MulAdd(det_b, along_a, hn::Mul(det_a, along_b)), det)));
+  // Most lobes of a scene are nowhere near.
+  const auto is_far = hn::Gt(exponent, hn::Set(d, kFarExponent));
+  if (hn::AllTrue(d, is_far)) return zero;
   const V along = hn::Add(along_a, along_b);
-  const V q = hn::IfThenElseZero(hn::Gt(along, zero), hn::Div(hn::Sub(along_b, along_a), along));
+  const V q = hn::Mul(hn::Sub(along_b, along_a), reciprocal(d, hn::Max(along, hn::Set(d, 1e-36f))));
   const V smooth =
       hn::Mul(half, hn::NegMulAdd(hn::Sub(one, cosine), hn::Mul(q, q), hn::Add(one, cosine)));
   const V mean = hn::Mul(half, hn::Add(hn::Add(ax, ay), hn::Add(bx, by)));
   const V large = hn::Add(mean, hn::Sqrt(hn::Max(hn::MulSub(mean, mean, det), zero)));
-  const V small = hn::IfThenElseZero(hn::Gt(large, zero), hn::Div(det, large));
+  const V small = hn::Mul(det, reciprocal(d, hn::Max(large, hn::Set(d, 1e-3f))));
   const V whole =
       asg_integral_exact(d, hn::MulAdd(large, scale, half), hn::MulAdd(small, scale, half));
-  return hn::Mul(hn::Mul(hn::Max(smooth, zero), whole), exp(d, hn::Neg(hn::Mul(exponent, scale))));
+  return hn::IfThenZeroElse(
+      is_far, hn::Mul(hn::Mul(hn::Max(smooth, zero), whole), exp(d, hn::Neg(exponent))));
 }
 
 /// LobeMoments of one lobe, in all lanes: see burnish/sphere/lobe_moments.h.

@@ -30,13 +30,14 @@ struct IrradianceTable {
   /// equal-area map of the SSDFs has a crease, of which an interpolation is off by 4 %.)
   static constexpr int kCells = 32;  ///< along an edge of the square, even
   static constexpr int kCorners = kCells + 1;
-  /// At the start of a normal's entry, by channel: what comes through the ladder's mean, and what
-  /// the ladder of a bare horizon lacks; the irradiance without shadow.
-  enum { kMean = 0, kUnshadowed = 4, kTerms = 16 };
+  /// By channel: what comes through the ladder's mean, and what the ladder of a bare horizon lacks;
+  /// the irradiance without shadow.
+  enum { kMean = 0, kUnshadowed = 4, kMeans = 8 };
 
   int terms = 0;
-  std::vector<float> entries;  ///< [kCorners^2][kTerms + 3 padded_terms(terms)]
-  size_t entry_size() const { return kTerms + 3 * padded_terms(terms); }
+  std::vector<float> means;    ///< [kCorners^2][kMeans]
+  std::vector<float> entries;  ///< through the eigenvectors: [kCorners^2][3][padded_terms(terms)]
+  size_t entry_size() const { return 3 * padded_terms(terms); }
 };
 
 /// The lobes' boundaries as a matrix product: SSDF and gradient at their axes are rows * a vertex's
@@ -60,8 +61,14 @@ struct PreparedLights {
   std::vector<RectangleLight> rectangles;
   std::vector<LobeBoundaries> boundaries;  ///< one for each basis
   std::vector<IrradianceTable> tables;     ///< one for each ladder; none without wide lobes
-  std::vector<float> scratch;              ///< of prepare_lights; shading does not read it
+  std::vector<float> scratch;              ///< of preparing; shading does not read it
 };
+
+/// Whether there is no light but an environment's map.
+inline bool is_dark(const PreparedLights& lights) {
+  return lights.lobes.empty() && lights.directionals.empty() && lights.spheres.empty() &&
+         lights.rectangles.empty();
+}
 
 /// Leaves out black lights. `options` are those of the frame calls. Throws std::invalid_argument
 /// for a light that domain_error (lobe_domain.h, local_lights.h) objects to; `lights` are of no use
@@ -72,6 +79,16 @@ PreparedLights prepare_lights(const LightRig& rig, const PreparedTransfer& trans
                               const ShadingOptions& options);
 void prepare_lights(const LightRig& rig, const PreparedTransfer& transfer,
                     const ShadingOptions& options, PreparedLights& lights);
+/// @}
+
+/// prepare_lights in parts, for callers with threads of their own: first begin_lights, then
+/// finish_lights for each basis of the transfer, in any order and at the same time. What is
+/// finished does not depend on it.
+/// @{
+void begin_lights(const LightRig& rig, const PreparedTransfer& transfer,
+                  const ShadingOptions& options, PreparedLights& lights);
+void finish_lights(const PreparedTransfer& transfer, const ShadingOptions& options, size_t basis,
+                   PreparedLights& lights);
 /// @}
 
 /// What lights a frame, in the world's frame. Borrowed: both outlive the calls they are given to.

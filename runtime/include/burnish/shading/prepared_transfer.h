@@ -10,16 +10,18 @@ namespace burnish {
 
 enum class RowFormat {
   float32,
-  float16,  ///< half the memory; what it adds to the error of the compression does not show
+  float16,  ///< half the memory, and faster; what it adds to the compression's error does not show
 };
 
 /// A transfer as the frame calls read it: prepared once, then immutable, and shared between
 /// threads. It holds all that shading needs; the transfer itself may go.
 struct PreparedTransfer {
-  /// A basis of SSDFs, its rows padded with zeros to whole vectors.
+  /// A basis of SSDFs: a row of its eigenvectors for each texel, padded with zeros to whole vectors,
+  /// as [resolution^2][padded_terms(terms)], in the transfer's format.
   struct Basis {
-    std::vector<float> mean;   ///< [resolution^2]
-    std::vector<float> eigen;  ///< [resolution^2][padded_terms(terms)]
+    std::vector<float> mean;             ///< [resolution^2]
+    std::vector<std::uint16_t> eigen16;  ///< IEEE 754 binary16
+    std::vector<float> eigen32;
   };
   /// A basis of the visibility ladder as pictures of the sphere, in the directions of the grid by
   /// which lights are integrated (prepared_lights.h), and as it was baked.
@@ -54,7 +56,7 @@ struct PreparedTransfer {
 inline size_t padded_terms(int terms) { return (static_cast<size_t>(terms) + 15) / 16 * 16; }
 
 /// `transfer` keeps the rules of Transfer, as one from read_transfer or bake does: sizes and ids
-/// are not checked. Coefficients beyond the range of float16, 65504, make it float32.
+/// are not checked. Numbers beyond the range of float16, 65504, make it float32.
 PreparedTransfer prepare_transfer(const Transfer& transfer, RowFormat format = RowFormat::float16);
 
 }  // namespace burnish
