@@ -38,7 +38,8 @@ std::vector<Eigen::Array3d> shade_in_double(const PreparedTransfer& transfer,
       add_vertex(transfer, v, block);
     kernels::pad_block(block);
     kernels::find_vertex_views(d, eye, block);
-    kernels::shade_block(d, transfer, material, lighting, options, block, result);
+    kernels::shade_block(d, transfer, kernels::SharedMaterial{material}, lighting, options, block,
+                         result);
     for (size_t i = 0; i < block.count; ++i)
       radiance.emplace_back(result[0][i], result[1][i], result[2][i]);
   }

@@ -23,10 +23,10 @@ struct Scene {
   PreparedTransfer transfer = prepare_transfer(random_transfer(
       {.vertices = kVertices, .terms = 9, .bases = 5, .ladder_terms = 7, .ladders = 5}, random));
   LightRig rig = random_rig(random);
-  std::vector<PreparedMaterial> materials = prepare_materials(
-      std::vector<Material>{{.diffuse = Rgb::Constant(0.5f)},
-                            find_material_preset("brushed aluminium")->material},
-      {});
+  std::vector<PreparedMaterial> materials =
+      prepare_materials(std::vector<Material>{{.diffuse = Rgb::Constant(0.5f)},
+                                              find_material_preset("brushed aluminium")->material},
+                        {});
   std::vector<std::uint8_t> ids;
   PrefilteredEnvironment environment;
   Vector3f eye = {0.3f, 2, -1.5f};

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "burnish/shading/shade_varying.h"
+#include "material/sample_materials.h"
+#include "shading/random_transfer.h"
 #include "shading/small_transfer.h"
 
 namespace burnish::test {
@@ -124,6 +126,39 @@ TEST(VaryingShading, EachVertexHasItsOwnMaterial) {
       // Rounding of frames.
       EXPECT_LT((varied[v] - expected).abs().maxCoeff(), 1e-3f * (expected.maxCoeff() + 1e-3f))
           << v << ": " << varied[v].transpose() << " / " << expected.transpose();
+    }
+  }
+}
+
+/// Of all models at once, with different numbers of lobes, past occluders and under local lights.
+TEST(VaryingShading, APointDoesNotKnowItsNeighboursMaterials) {
+  constexpr unsigned kSeed = 77;
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  std::vector<Material> materials = {{.diffuse = Rgb(0.2f, 0.5f, 0.8f)}, {}};
+  for (const NamedMaterial& named : all_materials()) materials.push_back(named.material);
+  const PreparedTransfer transfer = prepare_transfer(random_transfer(
+      {.vertices = materials.size(), .terms = 9, .bases = 3, .ladder_terms = 5, .ladders = 3},
+      random));
+  const LightRig rig = random_rig(random);
+  std::vector<ShadingPoint> points;
+  std::vector<Vector3f> outgoing;
+  for (size_t i = 0; i < materials.size(); ++i) {
+    points.push_back(vertex_shading_point(transfer, i));
+    outgoing.push_back(points[i].frame.to_world(Vector3f(0.3f, -0.4f, 0.866f).normalized()));
+  }
+  for (const Quality quality : {Quality::fast, Quality::balanced, Quality::accurate}) {
+    const ShadingOptions options = shading_options(quality);
+    const PreparedLights lights = prepare_lights(rig, transfer, options);
+    std::vector<Rgb> together(points.size());
+    shade_points(transfer, points, outgoing, materials, {&lights}, options, together);
+    for (size_t i = 0; i < points.size(); ++i) {
+      const Rgb alone =
+          shade_point(transfer, points[i], outgoing[i],
+                      prepare_material(materials[i], options.specular), {&lights}, options);
+      // Two compilations of one code fuse products and sums differently: some roundings.
+      EXPECT_LT((together[i] - alone).abs().maxCoeff(), 1e-6f * (alone.maxCoeff() + 0.1f))
+          << i << ": " << together[i].transpose() << " / " << alone.transpose();
     }
   }
 }

@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "burnish/shading/shade.h"
+#include "shading/block_materials-inl.h"
 #include "shading/diffuse-inl.h"
 #include "shading/local_lights-inl.h"
 #include "shading/specular-inl.h"
@@ -110,22 +111,24 @@ void clear(BlockRgb<T>& rgb) {
 
 /// The specular part, and local lights of both parts: teeth are placed some at a time, so that a
 /// light's lobes are found once for all of them.
-template <class D, class T = hn::TFromD<D>>
-HWY_NOINLINE void reflect(D d, const PreparedTransfer& transfer, const PreparedMaterial& material,
+template <class D, class Materials, class T = hn::TFromD<D>>
+HWY_NOINLINE void reflect(D d, const PreparedTransfer& transfer, const Materials& materials,
                           const Lighting& lighting, const ShadingOptions& options, size_t terms,
                           bool diffuse, ShadingBlock<T>& block, BlockRgb<T>& irradiance,
                           BlockRgb<T>& reflected) {
   constexpr int kTogether = 9;
   SliceBlock<T> slices[kTogether];
   const PreparedLights& lights = *lighting.lights;
-  for (int first = 0; first == 0 || first < material.count; first += kTogether) {
+  const bool specular = materials.is_specular(block.count);
+  int count = 0;
+  for (int first = 0; first == 0 || first < count; first += kTogether) {
+    if (specular) count = materials.slice(d, first, block, std::span<SliceBlock<T>>(slices));
     size_t placed = 0;
-    for (int k = first; k < std::min(first + kTogether, material.count); ++k) {
-      SliceBlock<T>& slice = slices[placed];
-      slice_tooth(d, material, k, block.count, block.outgoing, slice);
-      if (!turn_slice(d, block, slice)) continue;
-      reflect_environment(d, transfer, material.form, lighting, options, terms, block, slice,
+    for (int k = 0; k < std::min(count - first, kTogether); ++k) {
+      if (!turn_slice(d, block, slices[k])) continue;
+      reflect_environment(d, transfer, materials.form(), lighting, options, terms, block, slices[k],
                           reflected);
+      if (placed < static_cast<size_t>(k)) slices[placed] = slices[k];
       ++placed;
     }
     const bool irradiates = diffuse && first == 0;
@@ -141,29 +144,29 @@ HWY_NOINLINE void reflect(D d, const PreparedTransfer& transfer, const PreparedM
 
 /// Radiance of the block's points, 0 where they are seen from below. The block is complete but for
 /// its rows and its padding.
-template <class D, class T = hn::TFromD<D>>
-HWY_INLINE void shade_block(D d, const PreparedTransfer& transfer, const PreparedMaterial& material,
+template <class D, class Materials, class T = hn::TFromD<D>>
+HWY_INLINE void shade_block(D d, const PreparedTransfer& transfer, const Materials& materials,
                             const Lighting& lighting, const ShadingOptions& options,
                             ShadingBlock<T>& block, BlockRgb<T>& radiance) {
   const size_t terms = static_cast<size_t>(
       options.terms > 0 ? std::min(options.terms, transfer.terms) : transfer.terms);
-  const Rgb& albedo = material.material.diffuse;
-  const bool diffuse = (albedo > 0).any();
+  const bool diffuse = materials.is_diffuse(block.count) && !is_dark(*lighting.lights);
+  const bool specular = materials.is_specular(block.count);
   pad_block(block);
-  if ((diffuse && !is_dark(*lighting.lights)) || material.count > 0)
-    load_rows(d, transfer, terms, diffuse, block);
-  BlockRgb<T> irradiance;
+  if (diffuse || specular) load_rows(d, transfer, terms, diffuse, block);
+  BlockRgb<T> irradiance, albedo;
   clear(irradiance);
   clear(radiance);
+  materials.load_albedo(block.count, albedo);
   if (diffuse)
     add_environment_irradiance(d, transfer, *lighting.lights, options, terms, block, irradiance);
-  if (diffuse || material.count > 0)
-    reflect(d, transfer, material, lighting, options, terms, diffuse, block, irradiance, radiance);
+  if (diffuse || specular)
+    reflect(d, transfer, materials, lighting, options, terms, diffuse, block, irradiance, radiance);
   block.fetcher.fetch(block.fetcher.waiting());
   for (size_t i = 0; i < block.count; i += hn::Lanes(d)) {
     const auto above = hn::Gt(hn::Load(d, block.outgoing.z.data() + i), hn::Zero(d));
     for (size_t c = 0; c < 3; ++c) {
-      const auto scale = hn::Set(d, albedo[static_cast<int>(c)] / kPi<float>);
+      const auto scale = hn::Mul(hn::Set(d, 1 / kPi<float>), hn::Load(d, albedo[c].data() + i));
       const auto sum = hn::MulAdd(scale, hn::Load(d, irradiance[c].data() + i),
                                   hn::Load(d, radiance[c].data() + i));
       hn::Store(hn::IfThenElseZero(above, sum), d, radiance[c].data() + i);

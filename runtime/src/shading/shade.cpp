@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "burnish/shading/shade_varying.h"
 #include "shading/fill_block.h"
 #include "sphere/simd.h"
 
@@ -24,7 +25,15 @@ namespace {
 void shade_block_of_floats(const PreparedTransfer& transfer, const PreparedMaterial& material,
                            const Lighting& lighting, const ShadingOptions& options,
                            ShadingBlock<float>& block, BlockRgb<float>& radiance) {
-  shade_block(hn::ScalableTag<float>(), transfer, material, lighting, options, block, radiance);
+  shade_block(hn::ScalableTag<float>(), transfer, SharedMaterial{material}, lighting, options,
+              block, radiance);
+}
+
+void shade_varied_block(const PreparedTransfer& transfer, std::span<const Material> materials,
+                        const Lighting& lighting, const ShadingOptions& options,
+                        ShadingBlock<float>& block, BlockRgb<float>& radiance) {
+  shade_block(hn::ScalableTag<float>(), transfer, OwnMaterials{materials, options.specular},
+              lighting, options, block, radiance);
 }
 
 void shade_vertex_block(const PreparedTransfer& transfer, const PreparedMaterial& material,
@@ -34,7 +43,7 @@ void shade_vertex_block(const PreparedTransfer& transfer, const PreparedMaterial
   const hn::ScalableTag<float> d;
   pad_block(block);
   find_vertex_views(d, eye, block);
-  shade_block(d, transfer, material, lighting, options, block, radiance);
+  shade_block(d, transfer, SharedMaterial{material}, lighting, options, block, radiance);
 }
 
 }  // namespace
@@ -47,6 +56,7 @@ namespace burnish {
 namespace {
 
 HWY_EXPORT(shade_block_of_floats);
+HWY_EXPORT(shade_varied_block);
 HWY_EXPORT(shade_vertex_block);
 
 Rgb rgb_of(const BlockRgb<float>& rgb, size_t i) { return {rgb[0][i], rgb[1][i], rgb[2][i]}; }
@@ -100,6 +110,23 @@ void shade_group(const PreparedTransfer& transfer, const Lighting& lighting,
   }
 }
 
+/// Calls shade(first, block, result) for the points in blocks, each starting at point `first`.
+template <class Shade>
+void shade_in_blocks(const PreparedTransfer& transfer, std::span<const ShadingPoint> points,
+                     std::span<const Vector3f> outgoing, std::span<Rgb> radiance,
+                     const Shade& shade) {
+  ShadingBlock<float> block;
+  BlockRgb<float> result;
+  for (size_t done = 0; done < points.size();) {
+    start_block(block);
+    const size_t start = done;
+    for (; done < points.size() && has_room(transfer, block); ++done)
+      add_point(transfer, points[done], points[done].frame.to_local(outgoing[done]), block);
+    shade(start, block, result);
+    for (size_t i = 0; i < block.count; ++i) radiance[start + i] = rgb_of(result, i);
+  }
+}
+
 }  // namespace
 
 std::vector<PreparedMaterial> prepare_materials(std::span<const Material> materials,
@@ -127,17 +154,22 @@ void shade_points(const PreparedTransfer& transfer, std::span<const ShadingPoint
                   std::span<const Vector3f> outgoing, const PreparedMaterial& material,
                   const Lighting& lighting, const ShadingOptions& options,
                   std::span<Rgb> radiance) noexcept {
-  ShadingBlock<float> block;
-  BlockRgb<float> result;
-  for (size_t done = 0; done < points.size();) {
-    start_block(block);
-    const size_t start = done;
-    for (; done < points.size() && has_room(transfer, block); ++done)
-      add_point(transfer, points[done], points[done].frame.to_local(outgoing[done]), block);
-    HWY_DYNAMIC_DISPATCH(shade_block_of_floats)
-    (transfer, material, lighting, options, block, result);
-    for (size_t i = 0; i < block.count; ++i) radiance[start + i] = rgb_of(result, i);
-  }
+  shade_in_blocks(transfer, points, outgoing, radiance,
+                  [&](size_t, ShadingBlock<float>& block, BlockRgb<float>& result) {
+                    HWY_DYNAMIC_DISPATCH(shade_block_of_floats)
+                    (transfer, material, lighting, options, block, result);
+                  });
+}
+
+void shade_points(const PreparedTransfer& transfer, std::span<const ShadingPoint> points,
+                  std::span<const Vector3f> outgoing, std::span<const Material> materials,
+                  const Lighting& lighting, const ShadingOptions& options,
+                  std::span<Rgb> radiance) noexcept {
+  shade_in_blocks(transfer, points, outgoing, radiance,
+                  [&](size_t first, ShadingBlock<float>& block, BlockRgb<float>& result) {
+                    HWY_DYNAMIC_DISPATCH(shade_varied_block)
+                    (transfer, materials.subspan(first), lighting, options, block, result);
+                  });
 }
 
 Rgb shade_point(const PreparedTransfer& transfer, const ShadingPoint& point,

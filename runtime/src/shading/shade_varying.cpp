@@ -1,5 +1,8 @@
 #include "burnish/shading/shade_varying.h"
 
+#include <algorithm>
+#include <array>
+
 #include "shading/fill_block.h"
 
 namespace burnish {
@@ -7,14 +10,22 @@ namespace burnish {
 void shade_vertices(const PreparedTransfer& transfer, const Lighting& lighting,
                     const Material& base, const MaterialVariation& variation, const Vector3f& eye,
                     const ShadingOptions& options, size_t first, std::span<Rgb> radiance) noexcept {
-  for (size_t i = 0; i < radiance.size(); ++i) {
-    const size_t vertex = first + i;
-    ShadingPoint point = vertex_shading_point(transfer, vertex);
-    const SurfaceMaterial at = material_at(base, variation, vertex, point.frame);
-    point.frame = at.frame;
-    const Vector3f outgoing = toward(eye, point.position, point.frame.z);
-    radiance[i] = shade_point(transfer, point, outgoing,
-                              prepare_material(at.material, options.specular), lighting, options);
+  std::array<ShadingPoint, kBlock> points;
+  std::array<Vector3f, kBlock> outgoing;
+  std::array<Material, kBlock> materials;
+  for (size_t start = 0; start < radiance.size(); start += kBlock) {
+    const size_t count = std::min(kBlock, radiance.size() - start);
+    for (size_t i = 0; i < count; ++i) {
+      const size_t vertex = first + start + i;
+      points[i] = vertex_shading_point(transfer, vertex);
+      SurfaceMaterial at = material_at(base, variation, vertex, points[i].frame);
+      points[i].frame = at.frame;
+      materials[i] = std::move(at.material);
+      outgoing[i] = toward(eye, points[i].position, points[i].frame.z);
+    }
+    shade_points(transfer, std::span(points).first(count), std::span(outgoing).first(count),
+                 std::span(materials).first(count), lighting, options,
+                 radiance.subspan(start, count));
   }
 }
 

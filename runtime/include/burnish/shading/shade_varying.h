@@ -5,6 +5,13 @@
 
 namespace burnish {
 
+/// As shade_points of shade.h, with a material for each point, one that domain_error accepts. It is
+/// prepared anew, at its cost.
+void shade_points(const PreparedTransfer& transfer, std::span<const ShadingPoint> points,
+                  std::span<const Vector3f> outgoing, std::span<const Material> materials,
+                  const Lighting& lighting, const ShadingOptions& options,
+                  std::span<Rgb> radiance) noexcept;
+
 /// As shade_vertices, with a material that varies by vertex: `variation` has entries per vertex of
 /// the transfer (not of the range). Each vertex' material is prepared anew, at its cost: what
 /// varies may change from call to call.
