@@ -3,6 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
+
+#include "harness/flip.h"
+#include "harness/tone_map.h"
 
 namespace burnish {
 namespace {
@@ -46,25 +50,117 @@ struct Sums {
   }
 };
 
+/// Calls f(pixel) for the pixels that the mesh fills in both pictures.
+template <class F>
+void for_each_common_pixel(const Picture& a, const Picture& b, const F& f) {
+  for (size_t i = 0; i < b.hit.size(); ++i)
+    if (a.hit[i] && b.hit[i]) f(i);
+}
+
+Rgb variance_of(std::span<const Rgb> variance, size_t i) {
+  return variance.empty() ? Rgb(Rgb::Zero()) : variance[i];
+}
+
+/// From which AbsoluteErrors follow.
+struct AbsoluteSums {
+  std::vector<double> errors;
+  double reference = 0, noise = 0;
+
+  void add(const Rgb& approximation, const Rgb& truth, const Rgb& variance) {
+    const Eigen::Array3d b = truth.cast<double>();
+    errors.push_back((approximation.cast<double>() - b).abs().mean());
+    reference += b.mean();
+    noise += variance.cast<double>().sqrt().mean();
+  }
+
+  /// Sorts `errors` in part.
+  double percentile(size_t per_mille) {
+    const size_t rank = std::max<size_t>((errors.size() * per_mille + 999) / 1000, 1);
+    const auto place = errors.begin() + static_cast<std::ptrdiff_t>(rank - 1);
+    std::nth_element(errors.begin(), place, errors.end());
+    return *place;
+  }
+
+  AbsoluteErrors result() {
+    AbsoluteErrors r;
+    r.count = errors.size();
+    if (errors.empty()) return r;
+    const double count = double(errors.size());
+    r.mean_radiance = reference / count;
+    const auto relative = [&](double error) { return error > 0 ? error / r.mean_radiance : 0; };
+    for (const double error : errors) r.mean += error / count;
+    r.mean = relative(r.mean);
+    r.percentile_95 = relative(percentile(950));
+    r.percentile_999 = relative(percentile(999));
+    r.truth_noise = relative(std::sqrt(2 / kPi<double>) * noise / count);  // the mean of |normal|
+    return r;
+  }
+};
+
 }  // namespace
 
 RelativeL2 relative_l2(std::span<const Rgb> approximation, std::span<const Rgb> reference,
                        std::span<const Rgb> variance) {
   Sums sums;
   for (size_t i = 0; i < reference.size(); ++i)
-    sums.add(approximation[i], reference[i], variance.empty() ? Rgb(Rgb::Zero()) : variance[i]);
+    sums.add(approximation[i], reference[i], variance_of(variance, i));
   return sums.result();
 }
 
 RelativeL2 relative_l2(const Picture& approximation, const Picture& reference) {
   Sums sums;
-  const std::vector<Rgb>& variance = reference.variance.pixels;
-  for (size_t i = 0; i < reference.hit.size(); ++i) {
-    if (!approximation.hit[i] || !reference.hit[i]) continue;
+  for_each_common_pixel(approximation, reference, [&](size_t i) {
     sums.add(approximation.radiance.pixels[i], reference.radiance.pixels[i],
-             variance.empty() ? Rgb(Rgb::Zero()) : variance[i]);
-  }
+             variance_of(reference.variance.pixels, i));
+  });
   return sums.result();
+}
+
+AbsoluteErrors absolute_errors(std::span<const Rgb> approximation, std::span<const Rgb> reference,
+                               std::span<const Rgb> variance) {
+  AbsoluteSums sums;
+  for (size_t i = 0; i < reference.size(); ++i)
+    sums.add(approximation[i], reference[i], variance_of(variance, i));
+  return sums.result();
+}
+
+AbsoluteErrors absolute_errors(const Picture& approximation, const Picture& reference) {
+  AbsoluteSums sums;
+  for_each_common_pixel(approximation, reference, [&](size_t i) {
+    sums.add(approximation.radiance.pixels[i], reference.radiance.pixels[i],
+             variance_of(reference.variance.pixels, i));
+  });
+  return sums.result();
+}
+
+double psnr_db(const Picture& approximation, const Picture& reference) {
+  const float exposure = exposure_of(reference);
+  const Image a = tone_map(approximation.radiance, exposure);
+  const Image b = tone_map(reference.radiance, exposure);
+  double squares = 0;
+  size_t count = 0;
+  for_each_common_pixel(approximation, reference, [&](size_t i) {
+    squares += (a.pixels[i] - b.pixels[i]).cast<double>().square().mean();
+    ++count;
+  });
+  if (!(squares > 0)) return std::numeric_limits<double>::infinity();
+  return -10 * std::log10(squares / double(count));
+}
+
+FlipError flip_error(const Picture& approximation, const Picture& reference) {
+  const float exposure = exposure_of(reference);
+  FlipError error;
+  if (reference.hit.empty()) return error;
+  error.map =
+      flip_map(tone_map(approximation.radiance, exposure), tone_map(reference.radiance, exposure));
+  double sum = 0;
+  size_t count = 0;
+  for_each_common_pixel(approximation, reference, [&](size_t i) {
+    sum += double(error.map.pixels[i].x());
+    ++count;
+  });
+  error.mean = count > 0 ? sum / double(count) : 0;
+  return error;
 }
 
 Image side_by_side(std::span<const Image> pictures, int gap, const Rgb& fill) {

@@ -26,6 +26,46 @@ RelativeL2 relative_l2(std::span<const Rgb> approximation, std::span<const Rgb> 
 /// Over the pixels that the mesh fills in both pictures, which have the same size.
 RelativeL2 relative_l2(const Picture& approximation, const Picture& reference);
 
+/// Whether an error is told apart from the noise of the truth it is against: not below twice the
+/// error that a perfect approximation would measure.
+inline bool above_noise(double error, double truth_noise) { return error >= 2 * truth_noise; }
+inline bool above_noise(const RelativeL2& error) {
+  return above_noise(error.value, error.truth_noise);
+}
+
+/// Absolute errors as fractions of the reference's mean radiance: of a value (a pixel or vertex)
+/// the mean of |a - b| over its channels. All 0 where nothing differs, infinite for a black
+/// reference.
+struct AbsoluteErrors {
+  double mean = 0;
+  double percentile_95 = 0;   ///< the smallest error that 95 % of the values do not exceed
+  double percentile_999 = 0;  ///< the same of 99.9 %
+  double truth_noise = 0;     ///< `mean` of a perfect approximation: the truth's noise, if normal
+  double mean_radiance = 0;   ///< of the reference, over values and channels
+  size_t count = 0;           ///< values compared
+};
+
+/// As relative_l2 compares.
+/// @{
+AbsoluteErrors absolute_errors(std::span<const Rgb> approximation, std::span<const Rgb> reference,
+                               std::span<const Rgb> variance = {});
+AbsoluteErrors absolute_errors(const Picture& approximation, const Picture& reference);
+/// @}
+
+/// Peak signal-to-noise ratio in dB of the pixels that the mesh fills in both pictures, as tone_map
+/// shows them at the reference's exposure: -10 log10 of the mean squared difference. Infinite where
+/// nothing differs, and where there are no such pixels.
+double psnr_db(const Picture& approximation, const Picture& reference);
+
+/// FLIP (flip.h) of both pictures as tone_map shows them at the reference's exposure. The map has
+/// all pixels; the mean, unlike the published one, only those that the mesh fills in both, so that
+/// it does not depend on how much background there is. 0 without any.
+struct FlipError {
+  double mean = 0;
+  Image map;
+};
+FlipError flip_error(const Picture& approximation, const Picture& reference);
+
 /// Pictures in a row, top-aligned, `gap` pixels of `fill` between them.
 Image side_by_side(std::span<const Image> pictures, int gap = 8, const Rgb& fill = Rgb::Ones());
 
