@@ -16,6 +16,10 @@
 /// importance sampling, balance heuristic).
 namespace burnish {
 
+/// Of all that decides a reference's values but its inputs, primary rays and normals included.
+/// Raise it with every change of them, so that no kept truth is of the old code.
+inline constexpr int kReferenceVersion = 1;
+
 /// Which samples are taken. The single techniques exist to check the combined one.
 enum class SamplingTechnique {
   combined,     ///< lights and BRDF, by the balance heuristic
