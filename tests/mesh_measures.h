@@ -1,5 +1,11 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <map>
+#include <utility>
+#include <vector>
+
 #include "burnish/formats/triangle_mesh.h"
 
 namespace burnish::test {
@@ -26,6 +32,26 @@ inline double surface_area(const TriangleMesh& mesh) {
             2;
   }
   return area;
+}
+
+/// Edges that do not have exactly one triangle on either side, after welding equal positions.
+inline size_t open_edges(const TriangleMesh& mesh) {
+  std::map<std::array<float, 3>, std::uint32_t> welded;
+  std::vector<std::uint32_t> id;
+  for (const Vector3f& p : mesh.positions)
+    id.push_back(welded
+                     .try_emplace({p.x() + 0.0f, p.y() + 0.0f, p.z() + 0.0f},
+                                  static_cast<std::uint32_t>(welded.size()))
+                     .first->second);
+  std::map<std::pair<std::uint32_t, std::uint32_t>, int> directed;
+  for (const Triangle& t : mesh.triangles)
+    for (int i = 0; i < 3; ++i) ++directed[{id[t[i]], id[t[(i + 1) % 3]]}];
+  size_t open = 0;
+  for (const auto& [edge, count] : directed) {
+    const auto other = directed.find({edge.second, edge.first});
+    open += count != 1 || other == directed.end() || other->second != 1;
+  }
+  return open;
 }
 
 }  // namespace burnish::test

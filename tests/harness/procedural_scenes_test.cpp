@@ -1,15 +1,14 @@
 #include "harness/procedural_scenes.h"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
-#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "burnish/formats/error.h"
+#include "harness/primary_hits.h"
 #include "harness/shapes.h"
 #include "mesh_measures.h"
 
@@ -19,33 +18,17 @@ namespace {
 class EachScene : public testing::TestWithParam<std::string> {};
 
 INSTANTIATE_TEST_SUITE_P(ProceduralScenes, EachScene, testing::ValuesIn(scene_names()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& info) {
+                           std::string name = info.param;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 Vector3d triangle_cross(const TriangleMesh& mesh, const Triangle& triangle) {
   const Vector3d a = mesh.positions[triangle[0]].cast<double>();
   const Vector3d b = mesh.positions[triangle[1]].cast<double>();
   const Vector3d c = mesh.positions[triangle[2]].cast<double>();
   return (b - a).cross(c - a);
-}
-
-/// Edges that do not have exactly one triangle on either side, after welding equal positions.
-size_t open_edges(const TriangleMesh& mesh) {
-  std::map<std::array<float, 3>, std::uint32_t> welded;
-  std::vector<std::uint32_t> id;
-  for (const Vector3f& p : mesh.positions)
-    id.push_back(welded
-                     .try_emplace({p.x() + 0.0f, p.y() + 0.0f, p.z() + 0.0f},
-                                  static_cast<std::uint32_t>(welded.size()))
-                     .first->second);
-  std::map<std::pair<std::uint32_t, std::uint32_t>, int> directed;
-  for (const Triangle& t : mesh.triangles)
-    for (int i = 0; i < 3; ++i) ++directed[{id[t[i]], id[t[(i + 1) % 3]]}];
-  size_t open = 0;
-  for (const auto& [edge, count] : directed) {
-    const auto other = directed.find({edge.second, edge.first});
-    open += count != 1 || other == directed.end() || other->second != 1;
-  }
-  return open;
 }
 
 TEST_P(EachScene, HasConsistentArrays) {
@@ -115,6 +98,26 @@ TEST_P(EachScene, IsInFrontOfItsCamera) {
   EXPECT_GT(nearest, 0.1f) << "the camera is not inside an object";
 }
 
+TEST_P(EachScene, ShowsItsFirstMaterialInTheMiddleOfThePicture) {
+  const ProceduralScene scene = make_scene(GetParam());
+  Transfer transfer;
+  transfer.positions = scene.mesh.positions;
+  transfer.normals = scene.mesh.normals;
+  transfer.tangents = scene.mesh.tangents;
+  transfer.triangles = scene.mesh.triangles;
+  const PrimaryHits hits = trace_primary_rays(SceneRays(transfer), {scene.camera, 48, 32, 1});
+  size_t first = 0, front = 0, all = 0;
+  for (const PrimaryHit& hit : hits.hits) {
+    if (hit.triangle == PrimaryHit::kMiss) continue;
+    ++all;
+    first += scene.material_id[scene.mesh.triangles[hit.triangle][0]] == 0;
+    front += surface_point(transfer, hit, scene.camera.origin).front;
+  }
+  EXPECT_GT(double(all), 0.4 * 48 * 32);
+  EXPECT_GT(double(first), 0.05 * 48 * 32) << "what the scene is for is not a speck";
+  EXPECT_EQ(front, all) << "nothing is seen from behind";
+}
+
 TEST(ProceduralScenes, HaveTheStatedSizes) {
   EXPECT_NEAR(double(make_scene("dish").mesh.positions.size()), 25000, 500);
   EXPECT_EQ(make_scene("knot").mesh.positions.size(), 54000u);
@@ -137,7 +140,7 @@ TEST(Shapes, DishIsClosedAndHasTheVolumeOfItsProfile) {
   TriangleMesh mesh;
   const double thickness = 0.03;
   append_dish(mesh, 0.004, thickness, 160);
-  EXPECT_EQ(open_edges(mesh), 0u);
+  EXPECT_EQ(test::open_edges(mesh), 0u);
   float bottom = 1, outer = 0;
   for (const Vector3f& p : mesh.positions) {
     bottom = std::min(bottom, p.y());
@@ -168,7 +171,7 @@ TEST(Shapes, DishIsClosedAndHasTheVolumeOfItsProfile) {
 TEST(Shapes, SphereIsClosedAndHasItsVolume) {
   TriangleMesh mesh;
   append_sphere(mesh, Vector3f(1, 2, 3), 0.5, 96, 48);
-  EXPECT_EQ(open_edges(mesh), 0u);
+  EXPECT_EQ(test::open_edges(mesh), 0u);
   // An inscribed mesh of step h lacks about h^2 / 4 in each direction: 2 x 1.1e-3 at h = 2 pi / 96.
   EXPECT_NEAR(test::signed_volume(mesh) / (4 * kPi<double> / 3 * 0.125), 1, 3e-3);
   for (size_t i = 0; i < mesh.positions.size(); ++i)
@@ -178,7 +181,7 @@ TEST(Shapes, SphereIsClosedAndHasItsVolume) {
 TEST(Shapes, TorusKnotIsClosedAndHasTheVolumeOfItsTube) {
   TriangleMesh mesh;
   append_torus_knot(mesh, Vector3f::Zero(), 1.0, 0.4, 0.18, 1100, 40);
-  EXPECT_EQ(open_edges(mesh), 0u);
+  EXPECT_EQ(test::open_edges(mesh), 0u);
   // A tube's volume is section x length of its middle curve (Pappus, for any closed curve).
   double length = 0;
   const int steps = 20000;

@@ -1,44 +1,21 @@
 #include "harness/procedural_scenes.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "burnish/formats/error.h"
+#include "harness/scene_parts.h"
 #include "harness/shapes.h"
 
 namespace burnish {
 namespace {
-
-/// Gives a material to all vertices that have none yet.
-void paint(ProceduralScene& scene, const Material& material) {
-  const auto id = static_cast<std::uint8_t>(scene.materials.size());
-  scene.materials.push_back(material);
-  scene.material_id.resize(scene.mesh.positions.size(), id);
-}
-
-Material diffuse(const Rgb& albedo) { return {.diffuse = albedo, .specular = Rgb::Zero()}; }
-
-const Rgb kFloorAlbedo(0.40f, 0.38f, 0.35f);
-
-ProceduralScene dish() {
-  ProceduralScene scene;
-  // The gap is far below a floor cell: the dish seems to stand, and no two surfaces coincide.
-  append_dish(scene.mesh, 0.004, 0.03, 160);
-  paint(scene, {.diffuse = Rgb(0.05f, 0.045f, 0.04f),
-                .specular = Rgb(0.55f, 0.50f, 0.42f),
-                .model = SpecularModel::ward,
-                .alpha_x = 0.3f,
-                .alpha_y = 0.03f});
-  append_floor(scene.mesh, 2.5, 100, 0.5);
-  paint(scene, diffuse(kFloorAlbedo));
-  scene.camera = {Vector3f(0.0f, 1.75f, 2.45f), Vector3f(0.0f, 0.04f, 0.05f), Vector3f::UnitY(),
-                  42};
-  return scene;
-}
 
 ProceduralScene sphere() {
   ProceduralScene scene;
@@ -49,7 +26,7 @@ ProceduralScene sphere() {
                 .alpha_x = 0.3f,
                 .alpha_y = 0.1f});
   append_floor(scene.mesh, 4.0, 50, 0.5);
-  paint(scene, diffuse(kFloorAlbedo));
+  paint(scene, diffuse_material(kFloorAlbedo));
   scene.camera = {Vector3f(1.2f, 2.6f, 4.8f), Vector3f(0.0f, 0.8f, 0.0f), Vector3f::UnitY(), 42};
   return scene;
 }
@@ -69,11 +46,11 @@ ProceduralScene plane() {
 ProceduralScene wall() {
   ProceduralScene scene;
   append_floor(scene.mesh, 2.0, 48, 1.0);
-  paint(scene, diffuse(kFloorAlbedo));
+  paint(scene, diffuse_material(kFloorAlbedo));
   // Stands on the floor but for a gap, at z = -0.5, and looks to +z.
   append_rectangle(scene.mesh, Vector3f(-1.0f, 0.002f, -0.5f), Vector3f(2, 0, 0),
                    Vector3f(0, 1.2f, 0), 50, 30);
-  paint(scene, diffuse(Rgb(0.55f, 0.25f, 0.2f)));
+  paint(scene, diffuse_material(Rgb(0.55f, 0.25f, 0.2f)));
   scene.camera = {Vector3f(1.6f, 1.7f, 3.0f), Vector3f(0, 0.35f, -0.3f), Vector3f::UnitY(), 45};
   return scene;
 }
@@ -89,7 +66,7 @@ ProceduralScene knot_scene(double fineness) {
                 .alpha_x = 0.1f,
                 .alpha_y = 0.2f});
   append_floor(scene.mesh, 3.0, cells(99), 0.5);
-  paint(scene, diffuse(kFloorAlbedo));
+  paint(scene, diffuse_material(kFloorAlbedo));
   scene.camera = {Vector3f(0.0f, 2.9f, 3.6f), Vector3f(0, 0.35f, 0), Vector3f::UnitY(), 42};
   return scene;
 }
@@ -97,10 +74,35 @@ ProceduralScene knot_scene(double fineness) {
 constexpr int kKnotVertices = 54000;
 ProceduralScene knot() { return knot_scene(1); }
 
-constexpr std::array<std::pair<const char*, ProceduralScene (*)()>, 5> kScenes = {
-    {{"dish", dish}, {"sphere", sphere}, {"plane", plane}, {"wall", wall}, {"knot", knot}}};
+constexpr std::array<std::pair<const char*, ProceduralScene (*)()>, 12> kScenes = {{
+    {"dish", dish_scene},
+    {"sphere", sphere},
+    {"plane", plane},
+    {"wall", wall},
+    {"knot", knot},
+    {"teapot", teapot_scene},
+    {"cylinder", cylinder_scene},
+    {"dish-balls", dish_balls_scene},
+    {"dragon", dragon_scene},
+    {"pillow", pillow_scene},
+    {"dish-card", dish_card_scene},
+    {"cloth", cloth_scene},
+}};
 
 }  // namespace
+
+void paint(ProceduralScene& scene, const Material& material) {
+  const auto id = static_cast<std::uint8_t>(scene.materials.size());
+  scene.materials.push_back(material);
+  scene.material_id.resize(scene.mesh.positions.size(), id);
+}
+
+void stand(ProceduralScene& scene, std::uint32_t first, float gap) {
+  const auto vertices = std::span(scene.mesh.positions).subspan(first);
+  float lowest = std::numeric_limits<float>::infinity();
+  for (const Vector3f& p : vertices) lowest = std::min(lowest, p.y());
+  for (Vector3f& p : vertices) p.y() += gap - lowest;
+}
 
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;

@@ -27,6 +27,14 @@ struct ProceduralScene {
 /// - plane: a glossy floor and nothing else: nothing occludes
 /// - wall: a diffuse floor before a diffuse wall
 /// - knot: a glossy torus knot over a floor, 54k vertices
+/// and stand-ins for the other scenes of xu2013asg, Table 1, of closed bodies on a diffuse floor:
+/// - teapot: a brushed teapot and a brushed cylinder (Fig. 11), 54k vertices
+/// - cylinder: a brushed cylinder, 54k vertices
+/// - dish-balls: balls in and beside a dish, all brushed along their own axes (Fig. 12), 29k
+/// - dragon: a scaly, spiky knot of brushed aluminium (Fig. 13a), 46k
+/// - pillow: a satin pillow (Fig. 13c), 6k
+/// - dish-card: a card that leans on a satin dish (Fig. 13d), 17k
+/// - cloth: a draped cloth with folds (Fig. 14), 16k
 std::vector<std::string> scene_names();
 
 /// Throws Error for a name that scene_names() does not have.

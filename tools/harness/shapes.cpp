@@ -2,45 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include "harness/mesh_building.h"
 
 namespace burnish {
-namespace {
-
-void append_vertex(TriangleMesh& mesh, const Vector3d& position, const Vector3d& normal,
-                   const Vector3d& tangent) {
-  const Vector3f n = normal.cast<float>().normalized();
-  const Vector3f t = tangent.cast<float>();
-  mesh.file_vertex.push_back(static_cast<std::uint32_t>(mesh.positions.size()));
-  mesh.positions.push_back(position.cast<float>());
-  mesh.normals.push_back(n);
-  mesh.tangents.push_back((t - t.dot(n) * n).normalized());
-}
-
-/// Two triangles between the vertices a, b (next along the first parameter) and c, d (the same, one
-/// step further along the second). Their normal is first x second parameter.
-void append_cell(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c,
-                 std::uint32_t d) {
-  mesh.triangles.push_back({a, b, d});
-  mesh.triangles.push_back({a, d, c});
-}
-
-std::uint32_t next_vertex(const TriangleMesh& mesh) {
-  return static_cast<std::uint32_t>(mesh.positions.size());
-}
-
-/// Cells of a grid of rows x columns vertices that begins at `first`.
-void append_cells(TriangleMesh& mesh, std::uint32_t first, int columns, int rows, bool wrap_columns,
-                  bool wrap_rows) {
-  const auto index = [=](int column, int row) {
-    return first + static_cast<std::uint32_t>((row % rows) * columns + column % columns);
-  };
-  for (int row = 0; row < (wrap_rows ? rows : rows - 1); ++row)
-    for (int column = 0; column < (wrap_columns ? columns : columns - 1); ++column)
-      append_cell(mesh, index(column, row), index(column + 1, row), index(column, row + 1),
-                  index(column + 1, row + 1));
-}
-
-}  // namespace
 
 void append_revolution(TriangleMesh& mesh, std::span<const ProfilePoint> profile, int segments) {
   const std::uint32_t first = next_vertex(mesh);
@@ -106,6 +72,32 @@ void append_sphere(TriangleMesh& mesh, const Vector3f& center, double radius, in
   const size_t first = mesh.positions.size();
   append_revolution(mesh, profile, segments);
   for (size_t i = first; i < mesh.positions.size(); ++i) mesh.positions[i] += center;
+}
+
+void append_cylinder(TriangleMesh& mesh, double radius, double height, double bevel,
+                     const CylinderRings& rings, int segments) {
+  std::vector<ProfilePoint> profile;
+  const double inner = radius - bevel;
+  const auto append_disc = [&](double y, double normal, bool outward) {
+    for (int ring = 0; ring < rings.disc; ++ring) {
+      const int from_middle = outward ? ring : rings.disc - 1 - ring;
+      profile.push_back({inner * from_middle / rings.disc, y, 0, normal});
+    }
+  };
+  const auto append_bevel = [&](double y, double from_angle) {
+    for (int ring = 0; ring <= rings.bevel; ++ring) {
+      const double angle = from_angle + kPi<double> / 2 * ring / rings.bevel;
+      profile.push_back({inner + bevel * std::cos(angle), y + bevel * std::sin(angle),
+                         std::cos(angle), std::sin(angle)});
+    }
+  };
+  append_disc(0, -1, true);
+  append_bevel(bevel, -kPi<double> / 2);
+  for (int ring = 1; ring < rings.side; ++ring)
+    profile.push_back({radius, bevel + (height - 2 * bevel) * ring / rings.side, 1, 0});
+  append_bevel(height - bevel, 0);
+  append_disc(height, 1, false);
+  append_revolution(mesh, profile, segments);
 }
 
 void append_torus_knot(TriangleMesh& mesh, const Vector3f& center, double major_radius,

@@ -36,6 +36,16 @@ void append_floor(TriangleMesh& mesh, double half_size, int cells, double center
 void append_sphere(TriangleMesh& mesh, const Vector3f& center, double radius, int segments,
                    int rings);
 
+/// Rings of a cylinder: of each flat end but its edge, of each rounded edge, and of its side.
+struct CylinderRings {
+  int disc = 8, bevel = 6, side = 40;
+};
+
+/// Closed cylinder about the y axis that stands on y = 0, its edges rounded by `bevel`, which is
+/// below radius and height / 2.
+void append_cylinder(TriangleMesh& mesh, double radius, double height, double bevel,
+                     const CylinderRings& rings, int segments);
+
 /// Tube of round section along the (2, 3) torus knot about the y axis; tangents run along it.
 void append_torus_knot(TriangleMesh& mesh, const Vector3f& center, double major_radius,
                        double minor_radius, double tube_radius, int steps, int segments);
