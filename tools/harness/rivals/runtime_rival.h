@@ -8,7 +8,7 @@ namespace burnish {
 
 /// What the runtime shades with.
 struct RuntimeSettings {
-  ShadingOptions options;
+  ShadingOptions options = {};
   bool from_map = true;  ///< highlights of the filtered map, else of the lights' lobes
 };
 

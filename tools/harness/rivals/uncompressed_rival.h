@@ -10,7 +10,7 @@
 namespace burnish {
 
 struct UncompressedOptions {
-  ShadingOptions shading;
+  ShadingOptions shading = {};
   int directions = 512;  ///< as BakeOptions, 64..1024, a power of two
   int resolution = 128;  ///< of an SSDF, 16..directions, a power of two
   bool ladder = true;    ///< where shading.ladder and the scene's transfer have one
