@@ -21,7 +21,7 @@ size_t bytes_of(const std::vector<T>& values) {
 size_t shared_bytes(const PreparedTransfer& transfer) {
   size_t bytes = 0;
   for (const PreparedTransfer::Basis& basis : transfer.bases)
-    bytes += bytes_of(basis.mean) + bytes_of(basis.eigen);
+    bytes += bytes_of(basis.mean) + bytes_of(basis.eigen16) + bytes_of(basis.eigen32);
   for (const PreparedTransfer::Ladder& ladder : transfer.ladders)
     bytes += bytes_of(ladder.images) + bytes_of(ladder.harmonics.mean) +
              bytes_of(ladder.harmonics.eigen);

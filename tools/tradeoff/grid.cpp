@@ -1,0 +1,140 @@
+#include "tradeoff/grid.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "harness/rivals/runtime_rival.h"
+
+namespace burnish::tools {
+namespace {
+
+bool any_specular(const std::vector<Material>& materials) {
+  return std::any_of(materials.begin(), materials.end(),
+                     [](const Material& material) { return material.has_specular(); });
+}
+
+/// A dial, and how to set it.
+template <class Value, class Set>
+void add_dial(std::vector<GridPoint>& grid, const Settings& base, const char* format,
+              std::initializer_list<Value> values, const Set& set) {
+  for (const Value& value : values) {
+    Settings settings = base;
+    set(settings, value);
+    grid.push_back({fmt::format(fmt::runtime(format), value), settings});
+  }
+}
+
+void add_bake_dials(std::vector<GridPoint>& grid, const GridOptions& options) {
+  const Settings& base = options.base;
+  add_dial(grid, base, "terms {}", {4, 8, 16, 24, 32, 48},
+           [](Settings& s, int n) { s.bake.terms = n; });
+  add_dial(grid, base, "ladder terms {}", {0, 8, 16, 24, 32, 48},
+           [](Settings& s, int n) { s.bake.ladder_terms = n; });
+  if (!options.bakes) return;
+  add_dial(grid, base, "bases {}", {1, 2, 4, 16}, [](Settings& s, int n) { s.bake.bases = n; });
+  add_dial(grid, base, "resolution {}", {32, 64},
+           [](Settings& s, int n) { s.bake.resolution = n; });
+}
+
+void add_light_dials(std::vector<GridPoint>& grid, const Settings& base) {
+  add_dial(grid, base, "lobes {}", {1, 2, 4, 6, 16, 24, 32, 48},
+           [](Settings& s, int n) { s.lobes = n; });
+  add_dial(grid, base, "reach {}", {1, 8, 1000},
+           [](Settings& s, int n) { s.shading.ladder_reach = static_cast<float>(n); });
+  add_dial(grid, base, "visibility {}", {"cap", "hemisphere"}, [](Settings& s, const char* name) {
+    s.shading.visibility = name[0] == 'c' ? VisibilityModel::cap : VisibilityModel::hemisphere;
+  });
+  add_dial(grid, base, "cosine {}", {"constant"},
+           [](Settings& s, const char*) { s.shading.cosine = CosineModel::constant; });
+  add_dial(grid, base, "integral {}", {"fast", "series"}, [](Settings& s, const char* name) {
+    s.shading.integral = name[0] == 'f' ? AsgIntegral::fast : AsgIntegral::series;
+  });
+}
+
+void add_specular_dials(std::vector<GridPoint>& grid, const Settings& base) {
+  add_dial(grid, base, "taps {}", {1, 3, 7, 9},
+           [](Settings& s, int n) { s.shading.specular.taps = n; });
+  add_dial(grid, base, "peak, taps {}", {1, 5, 9}, [](Settings& s, int n) {
+    s.shading.specular.form = SpecularForm::peak;
+    s.shading.specular.taps = n;
+  });
+  add_dial(grid, base, "map taps {}", {1, 3, 9, 16},
+           [](Settings& s, int n) { s.shading.environment_taps = n; });
+  add_dial(grid, base, "highlights from {}", {"lobes"},
+           [](Settings& s, const char*) { s.specular_from_map = false; });
+}
+
+constexpr Quality kQualities[] = {Quality::fast, Quality::balanced, Quality::accurate};
+
+const char* name_of(Quality quality) {
+  switch (quality) {
+    case Quality::fast:
+      return "fast";
+    case Quality::balanced:
+      return "balanced";
+    case Quality::accurate:
+      break;
+  }
+  return "accurate";
+}
+
+}  // namespace
+
+std::vector<GridPoint> tradeoff_grid(const std::vector<Material>& materials,
+                                     const GridOptions& options) {
+  std::vector<GridPoint> grid;
+  for (const Quality quality : kQualities)
+    for (const int lobes : {6, 10, 24})
+      for (const int terms : {16, 48}) {
+        Settings settings = options.base;
+        settings.shading = shading_options(quality);
+        settings.lobes = lobes;
+        settings.bake.terms = terms;
+        std::string name = name_of(quality);
+        if (lobes != options.base.lobes) name += fmt::format(", lobes {}", lobes);
+        if (terms != options.base.bake.terms) name += fmt::format(", terms {}", terms);
+        grid.push_back({name, settings});
+      }
+  add_bake_dials(grid, options);
+  add_light_dials(grid, options.base);
+  if (any_specular(materials)) add_specular_dials(grid, options.base);
+  if (options.papers)
+    for (const auto& [name, model] : {std::pair{"paper", VisibilityModel::hemisphere},
+                                      std::pair{"paper, cap", VisibilityModel::cap}}) {
+      Settings settings = options.base;
+      settings.shading = paper_shading_options(model);
+      settings.bake.ladder_terms = 0;
+      grid.push_back({name, settings});
+    }
+  return grid;
+}
+
+std::vector<GridPoint> tuning_grid(const std::vector<Material>& materials,
+                                   const GridOptions& options) {
+  struct Look {
+    int taps, map_taps;
+  };
+  std::vector<Look> looks = {{1, 1}, {1, 3}, {3, 3}, {3, 5}, {5, 5}, {9, 5}, {9, 9}, {9, 32}};
+  if (!any_specular(materials)) looks.resize(1);
+  std::vector<GridPoint> grid;
+  for (const int terms : {8, 16, 32, 48})
+    for (const int lobes : {4, 10, 24, 48})
+      for (const float reach : {8.0f, 1.0f})
+        for (const Look& look : looks) {
+          Settings settings = options.base;
+          settings.bake.terms = terms;
+          settings.bake.ladder_terms = std::max(terms, 16);
+          settings.lobes = lobes;
+          settings.shading.ladder_reach = reach;
+          settings.shading.specular.taps = look.taps;
+          settings.shading.environment_taps = look.map_taps;
+          if (look.taps == 1) settings.shading.specular.lobes = 1;
+          grid.push_back({fmt::format("terms {}, lobes {}, reach {}, taps {}, map taps {}", terms,
+                                      lobes, reach, look.taps, look.map_taps),
+                          settings});
+        }
+  return grid;
+}
+
+}  // namespace burnish::tools
