@@ -6,6 +6,8 @@ int main(int argc, char** argv) {
   using namespace burnish::tools;
   constexpr std::array kStations = {
       Command{"bake", "time of a bake, and the diffuse error of what it baked", declare_bake_bench},
+      Command{"guard", "errors of small scenes against those that are written down",
+              declare_guard_bench},
       Command{"light", "time and error of fitted lights and of the filtered environment",
               declare_light_bench},
       Command{"material", "error of specular materials as lobes, by model, roughness and view",

@@ -6,6 +6,7 @@
 namespace burnish::tools {
 
 std::function<void()> declare_bake_bench(CLI::App& app);
+std::function<void()> declare_guard_bench(CLI::App& app);
 std::function<void()> declare_light_bench(CLI::App& app);
 std::function<void()> declare_material_bench(CLI::App& app);
 std::function<void()> declare_rivals_bench(CLI::App& app);

@@ -73,7 +73,7 @@ std::vector<Vector3f> eyes_around(const Camera& camera, int count) {
   return eyes;
 }
 
-Transfer with_terms(const Transfer& transfer, int terms, int ladder_terms) {
+Transfer with_terms(const Transfer& transfer, int terms) {
   Transfer result = transfer;
   const auto kept = static_cast<size_t>(std::min(terms, transfer.terms()));
   const auto size = static_cast<size_t>(transfer.terms());
@@ -82,17 +82,6 @@ Transfer with_terms(const Transfer& transfer, int terms, int ladder_terms) {
     basis.eigen = cut(basis.eigen, size, kept);
     basis.terms = static_cast<int>(kept);
   }
-  const auto ladder_size = static_cast<size_t>(transfer.ladder_terms());
-  const auto ladder_kept = static_cast<size_t>(std::min(ladder_terms, transfer.ladder_terms()));
-  result.ladder_coefficients = cut(transfer.ladder_coefficients, ladder_size, ladder_kept);
-  for (LadderBasis& basis : result.ladder_bases) {
-    basis.eigen = cut(basis.eigen, ladder_size, ladder_kept);
-    basis.terms = static_cast<int>(ladder_kept);
-  }
-  if (ladder_kept == 0) {
-    result.ladder_bases.clear();
-    result.ladder_crossover = 0;
-  }
   return result;
 }
 
@@ -100,10 +89,10 @@ Transfer with_terms(const Transfer& transfer, int terms, int ladder_terms) {
 struct Trial::Baked {
   Transfer whole;
   double seconds = 0;
-  int terms = -1, ladder_terms = -1;  ///< of the rest
+  int terms = -1;  ///< of the rest
   Transfer transfer;
   PreparedTransfer prepared;
-  std::map<std::pair<int, int>, size_t> file_bytes = {};  ///< by terms
+  std::map<int, size_t> file_bytes = {};  ///< by terms
 };
 
 struct Trial::Fitted {
@@ -128,7 +117,6 @@ const Transfer& Trial::transfer() const { return last_->transfer; }
 Trial::Baked& Trial::baked_for(const BakeOptions& bake_options) {
   BakeOptions most = bake_options;
   most.terms = std::max(options_.most_terms, bake_options.terms);
-  most.ladder_terms = std::max(options_.most_terms, bake_options.ladder_terms);
   Settings key;
   key.bake = most;
   std::unique_ptr<Baked>& baked = baked_[settings_json(key)["bake"].dump()];
@@ -138,11 +126,10 @@ Trial::Baked& Trial::baked_for(const BakeOptions& bake_options) {
     baked->whole = bake(scene_.scene.mesh, {}, most, {.progress = progress_});
     baked->seconds = seconds_since(start);
   }
-  if (baked->terms != bake_options.terms || baked->ladder_terms != bake_options.ladder_terms) {
-    baked->transfer = with_terms(baked->whole, bake_options.terms, bake_options.ladder_terms);
+  if (baked->terms != bake_options.terms) {
+    baked->transfer = with_terms(baked->whole, bake_options.terms);
     baked->prepared = prepare_transfer(baked->transfer);
     baked->terms = bake_options.terms;
-    baked->ladder_terms = bake_options.ladder_terms;
   }
   return *baked;
 }
@@ -186,7 +173,7 @@ TrialOutcome Trial::run(const Settings& settings) {
                            &baked.prepared};
   TrialOutcome outcome;
   outcome.bake_s = baked.seconds;
-  size_t& bytes = baked.file_bytes[{baked.terms, baked.ladder_terms}];
+  size_t& bytes = baked.file_bytes[baked.terms];
   if (bytes == 0) bytes = file_bytes_of(transfer);
   outcome.file_bytes = bytes;
   outcome.bytes_per_vertex = baked.prepared.bytes_per_vertex();

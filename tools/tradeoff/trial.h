@@ -37,7 +37,7 @@ struct TrialOptions {
   /// map: what is measured is then the error without that of the fit.
   bool fitted_truth = false;
   int frames = 3;       ///< timed for each eye, of which the median is told
-  int most_terms = 48;  ///< that any trial asks for, of SSDFs and ladder: fewer are cut from those
+  int most_terms = 48;  ///< of SSDFs that any trial asks for: fewer are cut from those
 };
 
 struct TrialOutcome {
@@ -83,7 +83,8 @@ class Trial {
   Baked* last_ = nullptr;
 };
 
-/// The first terms of a transfer, as if it had been baked with so many.
-Transfer with_terms(const Transfer& transfer, int terms, int ladder_terms);
+/// The first terms of a transfer's SSDFs, as if it had been baked with so many; the ladder and its
+/// crossover stay.
+Transfer with_terms(const Transfer& transfer, int terms);
 
 }  // namespace burnish::tools
