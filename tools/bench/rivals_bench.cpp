@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cmath>
+#include <map>
 #include <memory>
 
 #include "bench.h"
@@ -37,19 +37,23 @@ struct Part {
 
 using MakeRival = std::function<Rival(const RivalScene&)>;
 
-void add_sg_rivals(bool is_glossy, Work& work, std::vector<MakeRival>& rivals) {
+/// Fits of the map, by the number of lights.
+using SgFits = std::map<int, SgLights>;
+
+void add_sg_rivals(bool is_glossy, const SgFits& fits, std::vector<MakeRival>& rivals) {
   const auto add = [&](const SgOptions& options) {
-    rivals.push_back([options, &work](const RivalScene& scene) {
-      return sg_rival(scene, options, work.progress());
+    rivals.push_back([options, &fits](const RivalScene& scene) {
+      return sg_rival(scene, options, fits.at(options.light_lobes));
     });
   };
   if (is_glossy)
     for (const int lobes : {1, 3, 5, 7, 9, 13, 15, 19}) add({.lobes = lobes});
   else
     add({});
-  for (const int lights : {20, 40}) add({.light_lobes = lights});
-  for (const int lights : {10, 20, 40})
+  for (const auto& [lights, fit] : fits) {
+    if (lights != SgOptions{}.light_lobes) add({.light_lobes = lights});
     add({.light_lobes = lights, .cosine = CosineModel::horizon_normalised});
+  }
 }
 
 void add_uncompressed_rivals(const BakeOptions& bake, Work& work, std::vector<MakeRival>& rivals) {
@@ -67,7 +71,8 @@ void add_uncompressed_rivals(const BakeOptions& bake, Work& work, std::vector<Ma
       });
 }
 
-std::vector<MakeRival> all_rivals(const BakeOptions& bake, bool is_glossy, Work& work) {
+std::vector<MakeRival> all_rivals(const BakeOptions& bake, bool is_glossy, const SgFits& fits,
+                                  Work& work) {
   std::vector<MakeRival> rivals;
   for (const NamedOptions& named : all_options())
     rivals.push_back([named](const RivalScene& scene) {
@@ -76,7 +81,7 @@ std::vector<MakeRival> all_rivals(const BakeOptions& bake, bool is_glossy, Work&
   rivals.push_back([](const RivalScene& scene) {
     return runtime_rival(scene, "paper, cap", {paper_shading_options(VisibilityModel::cap)});
   });
-  add_sg_rivals(is_glossy, work, rivals);
+  add_sg_rivals(is_glossy, fits, rivals);
   for (const auto& [order, window] :
        {std::pair(3, false), {4, false}, {5, false}, {6, false}, {5, true}})
     rivals.push_back([order, window, &work](const RivalScene& scene) {
@@ -116,7 +121,8 @@ BenchRow measure_rival(const Rival& rival, const RivalScene& scene, const Vector
 }
 
 std::vector<BenchRow> measure_part(Part& part, const ShadeScene& whole, const SceneRays& rays,
-                                   double bake_s, const Options& options, Work& work) {
+                                   double bake_s, const SgFits& fits, const Options& options,
+                                   Work& work) {
   RivalScene scene;
   scene.subject = {&part.transfer, part.materials, {}, nullptr, &part.prepared};
   scene.rays = &rays;
@@ -131,7 +137,7 @@ std::vector<BenchRow> measure_part(Part& part, const ShadeScene& whole, const Sc
       work.progress());
   std::vector<BenchRow> rows;
   for (const MakeRival& make :
-       all_rivals(options.subject.bake, part.materials[0].has_specular(), work)) {
+       all_rivals(options.subject.bake, part.materials[0].has_specular(), fits, work)) {
     throw_if_interrupted();
     BenchRow row = {{"what", whole.name + ", " + part.name}};
     row.update(measure_rival(make(scene), scene, eye, truth, options.bench));
@@ -153,11 +159,14 @@ void run(const Options& options) {
                                     static_cast<size_t>(options.vertices), options.subject.seed));
   Material diffuse;
   diffuse.diffuse = Rgb::Constant(0.5f);
+  SgFits fits;
+  for (const int lights : {10, 20, 40})
+    fits[lights] = fit_sg_lights(whole.studio, lights, work.progress());
   std::vector<BenchRow> rows;
   for (const auto& [name, material] :
        {std::pair("diffuse", diffuse), std::pair("ashikhmin 8:800", ashikhmin_8_800())}) {
     Part part = {name, subset, prepare_transfer(subset), {material}};
-    for (BenchRow& row : measure_part(part, whole, rays, bake_s, options, work))
+    for (BenchRow& row : measure_part(part, whole, rays, bake_s, fits, options, work))
       rows.push_back(std::move(row));
   }
   report_bench("rivals", rows, options.bench, work);

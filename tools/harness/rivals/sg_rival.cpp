@@ -43,24 +43,36 @@ ShadingOptions sg_shading_options(const SgOptions& options) {
   return shading;
 }
 
-Rival sg_rival(const RivalScene& scene, const SgOptions& options, const Progress& progress) {
+SgLights fit_sg_lights(const Image& map, int lobes, const Progress& progress) {
+  const auto start = std::chrono::steady_clock::now();
+  SgLights lights;
+  lights.lobes = fit_light(map, {.lobes = lobes, .isotropic = true}, progress).rig.lobes;
+  lights.fit_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return lights;
+}
+
+Rival sg_rival(const RivalScene& scene, const SgOptions& options, const SgLights& lights) {
   require_complete(scene);
   const auto start = std::chrono::steady_clock::now();
   std::vector<PreparedMaterial> materials(scene.subject.materials.size());
   tbb::parallel_for(size_t{0}, materials.size(), [&](size_t i) {
     materials[i] = sg_material(scene.subject.materials[i], options.lobes);
   });
-  LightRig rig = scene.rig;
-  rig.lobes =
-      fit_light(*scene.map, {.lobes = options.light_lobes, .isotropic = true}, progress).rig.lobes;
   const std::chrono::duration<double> fitting = std::chrono::steady_clock::now() - start;
+  LightRig rig = scene.rig;
+  rig.lobes = lights.lobes;
   const std::string cosine = options.cosine == CosineModel::constant ? "" : ", horizon-normalised";
   Rival rival = runtime_rival(
       scene,
-      fmt::format("SG, {} a BRDF lobe, {} lights{}", options.lobes, options.light_lobes, cosine),
+      fmt::format("SG, {} a BRDF lobe, {} lights{}", options.lobes, lights.lobes.size(), cosine),
       {sg_shading_options(options)}, std::move(rig), std::move(materials));
-  rival.bake_s += fitting.count();
+  rival.bake_s += lights.fit_s + fitting.count();
   return rival;
+}
+
+Rival sg_rival(const RivalScene& scene, const SgOptions& options, const Progress& progress) {
+  require_complete(scene);
+  return sg_rival(scene, options, fit_sg_lights(*scene.map, options.light_lobes, progress));
 }
 
 }  // namespace burnish

@@ -18,8 +18,9 @@
 namespace burnish {
 
 struct SgOptions {
-  int lobes = 7;         ///< SGs of each material's D, 1..kMaxSpecularTeeth
-  int light_lobes = 10;  ///< SGs that the environment is fitted by, 1..128
+  int lobes = 7;  ///< SGs of each material's D, 1..kMaxSpecularTeeth
+  int light_lobes =
+      10;  ///< SGs that the environment is fitted by, 1..128, where they are not given
   /// Of the diffuse part. `constant`, the cosine at the light's axis, is the published method;
   /// `horizon_normalised` is ours, and for SGs a third of the error.
   CosineModel cosine = CosineModel::constant;
@@ -29,7 +30,18 @@ struct SgOptions {
 /// or displaced lobes (`fitted`, GGX) is fitted as distribution_of allows.
 PreparedMaterial sg_material(const Material& material, int lobes);
 
-/// Throws as fit_light does.
+/// The environment as SGs: fitted once for all rivals of one map.
+struct SgLights {
+  std::vector<EnvironmentLobe> lobes;  ///< in the map's frame, of equal bandwidths
+  double fit_s = 0;                    ///< wall clock
+};
+
+/// At most `lobes`, 1..128. Throws as fit_light does.
+SgLights fit_sg_lights(const Image& map, int lobes, const Progress& progress = {});
+
+Rival sg_rival(const RivalScene& scene, const SgOptions& options, const SgLights& lights);
+
+/// The same with lights of its own, options.light_lobes.
 Rival sg_rival(const RivalScene& scene, const SgOptions& options, const Progress& progress = {});
 
 /// Settings of the runtime in which it does what the SG pipeline does.
