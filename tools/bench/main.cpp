@@ -12,6 +12,8 @@ int main(int argc, char** argv) {
               declare_light_bench},
       Command{"material", "error of specular materials as lobes, by model, roughness and view",
               declare_material_bench},
+      Command{"reproduce", "the papers' figures and tables, made again: pictures and numbers",
+              declare_reproduce_bench},
       Command{"rivals", "other ways to shade a scene's vertices: errors and times",
               declare_rivals_bench},
       Command{"shade", "the frame: times, errors, bounds and growth", declare_shade_bench},
