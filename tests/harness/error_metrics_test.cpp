@@ -161,7 +161,9 @@ TEST(Psnr, MatchesItsDefinition) {
   other.radiance.at(2, 0) = Rgb::Constant(1000);
   other.hit[2] = 0;  // must not count
   const double shown = 1.055 * std::pow(0.18, 1 / 2.4) - 0.055;
+  EXPECT_NEAR(display_mse(other, reference), shown * shown / 6, 1e-6);
   EXPECT_NEAR(psnr_db(other, reference), -10 * std::log10(shown * shown / 6), 1e-4);
+  EXPECT_EQ(display_mse({}, {}), 0);
 }
 
 TEST(FlipError, IsTheMeanOverTheMeshOfTheMapOfShownPictures) {

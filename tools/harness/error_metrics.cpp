@@ -133,7 +133,7 @@ AbsoluteErrors absolute_errors(const Picture& approximation, const Picture& refe
   return sums.result();
 }
 
-double psnr_db(const Picture& approximation, const Picture& reference) {
+double display_mse(const Picture& approximation, const Picture& reference) {
   const float exposure = exposure_of(reference);
   const Image a = tone_map(approximation.radiance, exposure);
   const Image b = tone_map(reference.radiance, exposure);
@@ -143,8 +143,12 @@ double psnr_db(const Picture& approximation, const Picture& reference) {
     squares += (a.pixels[i] - b.pixels[i]).cast<double>().square().mean();
     ++count;
   });
-  if (!(squares > 0)) return std::numeric_limits<double>::infinity();
-  return -10 * std::log10(squares / double(count));
+  return count > 0 ? squares / double(count) : 0;
+}
+
+double psnr_db(const Picture& approximation, const Picture& reference) {
+  const double mse = display_mse(approximation, reference);
+  return mse > 0 ? -10 * std::log10(mse) : std::numeric_limits<double>::infinity();
 }
 
 FlipError flip_error(const Picture& approximation, const Picture& reference) {

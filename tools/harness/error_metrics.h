@@ -52,9 +52,12 @@ AbsoluteErrors absolute_errors(std::span<const Rgb> approximation, std::span<con
 AbsoluteErrors absolute_errors(const Picture& approximation, const Picture& reference);
 /// @}
 
-/// Peak signal-to-noise ratio in dB of the pixels that the mesh fills in both pictures, as tone_map
-/// shows them at the reference's exposure: -10 log10 of the mean squared difference. Infinite where
-/// nothing differs, and where there are no such pixels.
+/// Mean squared difference, 0..1, of the pixels that the mesh fills in both pictures, as tone_map
+/// shows them at the reference's exposure; 0 without any. The likeliest meaning of the "L2 error"
+/// of xu2013asg's pictures (docs/harness.md).
+double display_mse(const Picture& approximation, const Picture& reference);
+
+/// The same as a peak signal-to-noise ratio: -10 log10 of it, dB; infinite where it is 0.
 double psnr_db(const Picture& approximation, const Picture& reference);
 
 /// FLIP (flip.h) of both pictures as tone_map shows them at the reference's exposure. The map has
