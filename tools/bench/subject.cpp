@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "burnish/formats/mesh_file.h"
 #include "burnish/precompute/fit_light.h"
 #include "common/interrupt.h"
 #include "common/options.h"
@@ -22,19 +21,6 @@ void add_subject_options(CLI::App& app, SubjectOptions& options) {
   add_number(app, "--reference", "SPP", options.reference_samples, {0, 1 << 20, "samples a vertex"},
              "of the truth that the error is against; 0 for none");
   add_number(app, "--seed", "N", options.seed, "of the truth's random numbers");
-}
-
-ProceduralScene load_subject(const std::string& name) {
-  const std::vector<std::string> names = scene_names();
-  if (std::find(names.begin(), names.end(), name) != names.end()) return make_scene(name);
-  ProceduralScene scene;
-  scene.mesh = read_mesh(name);
-  scene.name = scene.mesh.name;
-  scene.materials = {Material{}};
-  Eigen::AlignedBox3f box;
-  for (const Vector3f& position : scene.mesh.positions) box.extend(position);
-  scene.camera = frame_bounds(box.min(), box.max(), 1.5f);
-  return scene;
 }
 
 StudioLight make_studio_light(const PreparedTransfer& transfer, const ShadingOptions& options,

@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 
 #include "burnish/precompute/bake.h"
+#include "common/scene_input.h"
 #include "common/work.h"
 #include "harness/error_metrics.h"
 #include "harness/procedural_scenes.h"
@@ -24,9 +25,6 @@ struct SubjectOptions {
 
 /// Declares SCENE|MESH, --reference, --seed and the bake's dials.
 void add_subject_options(CLI::App& app, SubjectOptions& options);
-
-/// A procedural scene, or a mesh file with a camera that frames it and one grey material.
-ProceduralScene load_subject(const std::string& name);
 
 /// The procedural studio, as it is and ready for shading.
 struct StudioLight {

@@ -17,6 +17,7 @@
 #include "common/pipeline_options.h"
 #include "common/program.h"
 #include "common/reports.h"
+#include "common/settings_option.h"
 #include "common/work.h"
 
 namespace burnish::tools {
@@ -280,6 +281,9 @@ std::function<void()> declare_bake(CLI::App& app) {
   add_file(app, "-o,--output", "FILE.h5", options->output, "transfer file to write (required)",
            ".h5")
       ->required();
+  add_settings_option(app, {{&SettingsFile::bake, "bake", [options](CLI::App& dials) {
+                               add_bake_options(dials, options->bake);
+                             }}});
   add_bake_options(app, options->bake);
   add_number(app, "--max-edge", "A", options->max_edge, {0, 1e30f, "world units"},
              "halve longer edges before the bake, 0 for none");

@@ -11,6 +11,7 @@ std::function<void()> declare_fit_light(CLI::App& app);
 std::function<void()> declare_fit_brdf(CLI::App& app);
 std::function<void()> declare_render(CLI::App& app);
 std::function<void()> declare_shade(CLI::App& app);
+std::function<void()> declare_tune(CLI::App& app);
 std::function<void()> declare_demo(CLI::App& app);
 
 }  // namespace burnish::tools

@@ -14,6 +14,7 @@
 #include "common/interrupt.h"
 #include "common/machine.h"
 #include "common/options.h"
+#include "common/settings_option.h"
 #include "common/work.h"
 #include "harness/light_picture.h"
 #include "look_options.h"
@@ -85,7 +86,11 @@ std::function<void()> declare_fit_light(CLI::App& app) {
            ".json")
       ->required();
   LightFitOptions& fit = options->fit;
-  add_number(app, "--lobes", "N", fit.lobes, {1, 128}, "lights to fit, at most");
+  const auto add_lobes = [options](CLI::App& dials) {
+    add_number(dials, "--lobes", "N", options->fit.lobes, {1, 128}, "lights to fit, at most");
+  };
+  add_settings_option(app, {{&SettingsFile::lights, "lights", add_lobes}});
+  add_lobes(app);
   add_number(
       app, "--target-error", "E", fit.target_error, {0.0, 1.0},
       "relative L2 error of the radiance: lights are added until it is met (0: all of them)");

@@ -15,11 +15,25 @@
 #include "common/options.h"
 #include "common/pipeline_options.h"
 #include "common/program.h"
+#include "common/settings_option.h"
 #include "harness/parallel_prefilter.h"
 #include "harness/studio_environment.h"
 
 namespace burnish::tools {
 namespace {
+
+void add_lobes_option(CLI::App& app, LookOptions& options) {
+  add_number(app, "--lobes", "N", options.fit.lobes, {1, 128}, "lights to fit without --lights");
+}
+
+/// All dials of shading.
+void add_dials(CLI::App& app, LookOptions& options) {
+  add_shading_options(app, options.shading);
+  add_number(app, "--terms", "N", options.shading.terms, {0, 1024},
+             "PCA terms used, at most those baked; 0 for all");
+  add_choice(app, "--specular-from", options.specular_from_map, {{"map", true}, {"lobes", false}},
+             "what highlights reflect: the environment map or the fitted lights");
+}
 
 void add_light_options(CLI::App& app, LookOptions& options) {
   add_file(app, "--env", "ENV", options.environment,
@@ -28,7 +42,7 @@ void add_light_options(CLI::App& app, LookOptions& options) {
                        kStudioName));
   add_file(app, "--lights", "FILE.json", options.lights,
            "lights to use, as fit-light writes them (default: fitted to ENV)");
-  add_number(app, "--lobes", "N", options.fit.lobes, {1, 128}, "lights to fit without --lights");
+  add_lobes_option(app, options);
   add_number(app, "--rotate-env", "DEG", options.rotate_deg, {-3600, 3600, "degrees"},
              "turns the environment about the upward axis, counter-clockwise from above");
   add_choice(app, "--up", options.up, {{"x", UpAxis::x}, {"y", UpAxis::y}, {"z", UpAxis::z}},
@@ -94,6 +108,10 @@ void scale_map(Image& environment, float factor, const LookOptions& options) {
 void add_look_options(CLI::App& app, LookOptions& options) {
   add_file(app, "FILE.h5", "FILE.h5", options.transfer, "transfer file of bake (required)")
       ->required();
+  add_settings_option(app, {{&SettingsFile::lights, "lights",
+                             [&options](CLI::App& dials) { add_lobes_option(dials, options); }},
+                            {&SettingsFile::shading, "shading",
+                             [&options](CLI::App& dials) { add_dials(dials, options); }}});
   add_light_options(app, options);
   add_material_options(app, options.material);
   add_parsed(app, "--camera", "CAMERA",
@@ -110,11 +128,7 @@ void add_look_options(CLI::App& app, LookOptions& options) {
                options.camera = found;
                return true;
              });
-  add_shading_options(app, options.shading);
-  add_number(app, "--terms", "N", options.shading.terms, {0, 1024},
-             "PCA terms used, at most those baked; 0 for all");
-  add_choice(app, "--specular-from", options.specular_from_map, {{"map", true}, {"lobes", false}},
-             "what highlights reflect: the environment map or the fitted lights");
+  add_dials(app, options);
 }
 
 Look load_look(const LookOptions& options, Work& work) {

@@ -14,6 +14,8 @@ int main(int argc, char** argv) {
       Command{"render", "draw a baked mesh under an environment, and the truth beside it",
               declare_render},
       Command{"shade", "write the radiance of every vertex as PLY", declare_shade},
+      Command{"tune", "find the settings that are accurate or fast enough on a scene",
+              declare_tune},
       Command{"demo", "bake, light and draw a built-in scene", declare_demo},
   };
   const Program program{"burnish",

@@ -117,22 +117,25 @@ std::vector<GridPoint> tuning_grid(const std::vector<Material>& materials,
   };
   std::vector<Look> looks = {{1, 1}, {1, 3}, {3, 3}, {3, 5}, {5, 5}, {9, 5}, {9, 9}, {9, 32}};
   if (!any_specular(materials)) looks.resize(1);
+  const int terms[] = {8, 16, 32, 48}, lobes[] = {4, 10, 24, 48};
+  const float reach[] = {8, 1};
   std::vector<GridPoint> grid;
-  for (const int terms : {8, 16, 32, 48})
-    for (const int lobes : {4, 10, 24, 48})
-      for (const float reach : {8.0f, 1.0f})
-        for (const Look& look : looks) {
+  for (size_t look = 0; look < looks.size(); ++look)
+    for (int t = 0; t < 4; ++t)
+      for (int l = 0; l < 4; ++l)
+        for (int r = 0; r < 2; ++r) {
           Settings settings = options.base;
-          settings.bake.terms = terms;
-          settings.bake.ladder_terms = std::max(terms, 16);
-          settings.lobes = lobes;
-          settings.shading.ladder_reach = reach;
-          settings.shading.specular.taps = look.taps;
-          settings.shading.environment_taps = look.map_taps;
-          if (look.taps == 1) settings.shading.specular.lobes = 1;
-          grid.push_back({fmt::format("terms {}, lobes {}, reach {}, taps {}, map taps {}", terms,
-                                      lobes, reach, look.taps, look.map_taps),
-                          settings});
+          settings.bake.terms = terms[t];
+          settings.lobes = lobes[l];
+          settings.shading.ladder_reach = reach[r];
+          settings.shading.specular.taps = looks[look].taps;
+          settings.shading.environment_taps = looks[look].map_taps;
+          if (looks[look].taps == 1) settings.shading.specular.lobes = 1;
+          grid.push_back(
+              {fmt::format("terms {}, lobes {}, reach {}, taps {}, map taps {}", terms[t], lobes[l],
+                           reach[r], looks[look].taps, looks[look].map_taps),
+               settings,
+               {static_cast<int>(look), t, l, r}});
         }
   return grid;
 }

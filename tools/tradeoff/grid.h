@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@ namespace burnish::tools {
 struct GridPoint {
   std::string name;  ///< the dials that are not as in the middle of the grid, "terms 16, taps 9"
   Settings settings;
+  std::array<int, 4> level = {};  ///< in the tuning grid: how dear each of its dials is
 };
 
 /// Which dials a grid varies. The rest are as in `base`.

@@ -1,5 +1,7 @@
 #include "tradeoff/settings.h"
 
+#include <fmt/format.h>
+
 namespace burnish::tools {
 namespace {
 
@@ -29,31 +31,45 @@ const char* name_of(AsgIntegral integral) {
 
 }  // namespace
 
-nlohmann::ordered_json settings_json(const Settings& settings) {
+SettingsFile settings_file(const Settings& settings) {
   const BakeOptions& bake = settings.bake;
   const ShadingOptions& shading = settings.shading;
-  nlohmann::ordered_json json;
-  json["bake"] = {{"directions", bake.directions},
-                  {"resolution", bake.resolution},
-                  {"terms", bake.terms},
-                  {"bases", bake.bases},
-                  {"ladder-terms", bake.ladder_terms},
-                  {"training-vertices", bake.training_vertices}};
-  json["lights"] = {{"lobes", settings.lobes}};
-  json["shading"] = {
+  const auto number = [](const char* name, auto value) {
+    return DialSetting{name, fmt::format("{}", value)};
+  };
+  SettingsFile file;
+  file.bake = {number("directions", bake.directions),
+               number("resolution", bake.resolution),
+               number("terms", bake.terms),
+               number("bases", bake.bases),
+               number("ladder-terms", bake.ladder_terms),
+               number("training-vertices", bake.training_vertices)};
+  file.lights = {number("lobes", settings.lobes)};
+  file.shading = {
       {"visibility", name_of(shading.visibility)},
       {"cosine", shading.cosine == CosineModel::constant ? "constant" : "horizon-normalised"},
       {"integral", name_of(shading.integral)},
       {"ladder", shading.ladder ? "on" : "off"},
-      {"ladder-reach", shading.ladder_reach},
+      number("ladder-reach", shading.ladder_reach),
       {"specular-form", shading.specular.form == SpecularForm::peak ? "peak" : "moments"},
-      {"specular-taps", shading.specular.taps},
-      {"specular-lobes", shading.specular.lobes},
-      {"split-bandwidth", shading.split_bandwidth},
-      {"environment-taps", shading.environment_taps},
-      {"terms", shading.terms},
+      number("specular-taps", shading.specular.taps),
+      number("specular-lobes", shading.specular.lobes),
+      number("split-bandwidth", shading.split_bandwidth),
+      number("environment-taps", shading.environment_taps),
       {"specular-from", settings.specular_from_map ? "map" : "lobes"}};
-  return json;
+  return file;
+}
+
+nlohmann::ordered_json settings_json(const Settings& settings) {
+  const SettingsFile file = settings_file(settings);
+  const auto object = [](const std::vector<DialSetting>& dials) {
+    nlohmann::ordered_json json = nlohmann::ordered_json::object();
+    for (const DialSetting& dial : dials) json[dial.name] = dial.value;
+    return json;
+  };
+  return {{"bake", object(file.bake)},
+          {"lights", object(file.lights)},
+          {"shading", object(file.shading)}};
 }
 
 }  // namespace burnish::tools

@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "burnish/formats/settings_file.h"
 #include "burnish/precompute/bake.h"
 #include "burnish/shading/shading_options.h"
 
@@ -15,8 +16,10 @@ struct Settings {
   bool specular_from_map = true;  ///< highlights reflect the map, else the fitted lights
 };
 
-/// Dials under the names that they have on the command line, by the commands that take them:
-/// {"bake": {"directions": 512, ...}, "lights": {"lobes": 10}, "shading": {...}}.
+/// Every dial under the name that it has on the command line, by the commands that take it.
+SettingsFile settings_file(const Settings& settings);
+
+/// The same: {"bake": {"directions": "512", ...}, "lights": {"lobes": "10"}, "shading": {...}}.
 nlohmann::ordered_json settings_json(const Settings& settings);
 
 }  // namespace burnish::tools

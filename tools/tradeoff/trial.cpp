@@ -99,15 +99,32 @@ struct Trial::Fitted {
   LightRig rig;
 };
 
+/// Where errors are measured.
+struct Trial::Views {
+  std::vector<Vector3f> eyes;
+  std::vector<std::vector<std::uint32_t>> drawn;  ///< [eyes][vertices]
+  std::map<int, VertexTruth> truths;              ///< by lobes; 0: of the map
+};
+
+std::unique_ptr<Trial::Views> Trial::draw(const std::vector<Vector3f>& eyes, size_t vertices,
+                                          std::uint64_t seed) const {
+  auto views = std::make_unique<Views>();
+  views->eyes = eyes;
+  const size_t count = scene_.scene.mesh.positions.size();
+  for (size_t i = 0; i < eyes.size(); ++i)
+    views->drawn.push_back(draw_vertices(count, vertices > 0 ? vertices : count, seed + i));
+  return views;
+}
+
 Trial::Trial(TrialScene scene, const TrialOptions& options, const Progress& progress)
     : scene_(std::move(scene)),
       options_(options),
       progress_(progress),
       filtered_(prefilter_in_parallel(scene_.map)) {
-  const size_t count = scene_.scene.mesh.positions.size();
-  const size_t wanted = options.vertices > 0 ? static_cast<size_t>(options.vertices) : count;
-  for (size_t i = 0; i < scene_.eyes.size(); ++i)
-    drawn_.push_back(draw_vertices(count, wanted, options.seed + i));
+  const auto vertices = static_cast<size_t>(std::max(options.vertices, 0));
+  constexpr std::uint64_t kOtherSeeds = 1000;
+  views_ = draw(scene_.eyes, vertices, options.seed);
+  check_views_ = draw(scene_.check_eyes, 3 * vertices, options.seed + kOtherSeeds);
 }
 
 Trial::~Trial() = default;
@@ -144,30 +161,34 @@ Trial::Fitted& Trial::fitted_for(int lobes) {
   return *fitted;
 }
 
-const VertexTruth& Trial::truth_for(const Transfer& geometry, int lobes) {
+const VertexTruth& Trial::truth_for(const Transfer& geometry, int lobes, Views& views) {
   const int key = options_.fitted_truth ? lobes : 0;
-  const auto found = truths_.find(key);
-  if (found != truths_.end()) return found->second;
+  const auto found = views.truths.find(key);
+  if (found != views.truths.end()) return found->second;
   const Subject subject = {&geometry, scene_.scene.materials, scene_.scene.material_id};
   std::vector<TruthPoint> points;
-  for (size_t i = 0; i < scene_.eyes.size(); ++i) {
-    const std::vector<TruthPoint> seen = points_seen_from(subject, drawn_[i], scene_.eyes[i]);
+  for (size_t i = 0; i < views.eyes.size(); ++i) {
+    const std::vector<TruthPoint> seen = points_seen_from(subject, views.drawn[i], views.eyes[i]);
     points.insert(points.end(), seen.begin(), seen.end());
   }
   const Image lit = options_.fitted_truth ? map_of(fitted_for(lobes).rig) : Image();
   const SceneRays rays(geometry);
   const ReferenceLights lights = {{options_.fitted_truth ? &lit : &scene_.map}};
-  return truths_
+  return views.truths
       .emplace(key, vertex_truth(subject, rays, points, lights, options_.truth, options_.cache,
                                  progress_))
       .first->second;
 }
 
-TrialOutcome Trial::run(const Settings& settings) {
+TrialOutcome Trial::run(const Settings& settings) { return run_on(settings, *views_); }
+
+TrialOutcome Trial::check(const Settings& settings) { return run_on(settings, *check_views_); }
+
+TrialOutcome Trial::run_on(const Settings& settings, Views& views) {
   Baked& baked = baked_for(settings.bake);
   last_ = &baked;
   const Transfer& transfer = baked.transfer;
-  const VertexTruth& truth = truth_for(transfer, settings.lobes);
+  const VertexTruth& truth = truth_for(transfer, settings.lobes, views);
   const LightRig& rig = fitted_for(settings.lobes).rig;
   const Subject subject = {&transfer, scene_.scene.materials, scene_.scene.material_id, nullptr,
                            &baked.prepared};
@@ -183,7 +204,7 @@ TrialOutcome Trial::run(const Settings& settings) {
   const Lighting lighting = {&lights, settings.specular_from_map ? &filtered_ : nullptr};
   std::vector<double> prepare_ms, frame_ms;
   std::vector<Rgb> shaded;
-  for (size_t i = 0; i < scene_.eyes.size(); ++i) {
+  for (size_t i = 0; i < views.eyes.size(); ++i) {
     std::vector<Rgb> radiance;
     for (int frame = 0; frame < options_.frames; ++frame) {
       const auto start = std::chrono::steady_clock::now();
@@ -192,10 +213,10 @@ TrialOutcome Trial::run(const Settings& settings) {
         finish_lights(baked.prepared, settings.shading, basis, lights);
       });
       prepare_ms.push_back(seconds_since(start) * 1e3);
-      radiance = shade_all_vertices(subject, lighting, scene_.eyes[i], settings.shading);
+      radiance = shade_all_vertices(subject, lighting, views.eyes[i], settings.shading);
       frame_ms.push_back(seconds_since(start) * 1e3);
     }
-    for (const std::uint32_t vertex : drawn_[i]) shaded.push_back(radiance[vertex]);
+    for (const std::uint32_t vertex : views.drawn[i]) shaded.push_back(radiance[vertex]);
   }
   outcome.prepare_ms = median(prepare_ms);
   outcome.frame_ms = median(frame_ms);

@@ -19,9 +19,10 @@ namespace burnish::tools {
 /// A scene, a light, and from where it is seen.
 struct TrialScene {
   ProceduralScene scene;
-  std::string environment;     ///< its name, for people
-  Image map;                   ///< lat-long
-  std::vector<Vector3f> eyes;  ///< one or more
+  std::string environment;                ///< its name, for people
+  Image map;                              ///< lat-long
+  std::vector<Vector3f> eyes;             ///< one or more
+  std::vector<Vector3f> check_eyes = {};  ///< for Trial::check
 };
 
 /// Eyes around a camera's target, the camera's own first, the others a turn about the upward axis
@@ -60,6 +61,9 @@ class Trial {
 
   /// Throws Cancelled when `progress` asked to stop.
   TrialOutcome run(const Settings& settings);
+  /// The same on other vertices, three times as many, seen from the check_eyes: what was chosen by
+  /// run() is told of without the luck that made it be chosen.
+  TrialOutcome check(const Settings& settings);
 
   const TrialScene& scene() const { return scene_; }
   /// The transfer that run() last shaded.
@@ -68,18 +72,21 @@ class Trial {
  private:
   struct Baked;
   struct Fitted;
+  struct Views;
   Baked& baked_for(const BakeOptions& bake);
   Fitted& fitted_for(int lobes);
-  const VertexTruth& truth_for(const Transfer& geometry, int lobes);
+  const VertexTruth& truth_for(const Transfer& geometry, int lobes, Views& views);
+  TrialOutcome run_on(const Settings& settings, Views& views);
+  std::unique_ptr<Views> draw(const std::vector<Vector3f>& eyes, size_t vertices,
+                              std::uint64_t seed) const;
 
   TrialScene scene_;
   TrialOptions options_;
   Progress progress_;
   PrefilteredEnvironment filtered_;
-  std::vector<std::vector<std::uint32_t>> drawn_;  // [eyes][vertices]
   std::map<std::string, std::unique_ptr<Baked>> baked_;
   std::map<int, std::unique_ptr<Fitted>> fitted_;
-  std::map<int, VertexTruth> truths_;  // by lobes; 0: of the map
+  std::unique_ptr<Views> views_, check_views_;
   Baked* last_ = nullptr;
 };
 
