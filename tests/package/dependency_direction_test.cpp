@@ -106,6 +106,14 @@ TEST_F(IncludeRules, RejectPrivateHeadersOutsideTheirPlace) {
   EXPECT_EQ(objections("runtime/src/a.cpp", "<iostream>\n  #  include <hdf5.h>  // storage"), 1u);
 }
 
+// Vectors stay inside the library: who uses it needs no Highway.
+TEST_F(IncludeRules, RejectHighwayInPublicHeadersOfTheRuntime) {
+  EXPECT_EQ(objections("runtime/src/a.cpp", "<hwy/highway.h>"), 0u);
+  EXPECT_EQ(objections("runtime/src/sphere/a-inl.h", "\"hwy/highway.h\""), 0u);
+  EXPECT_EQ(objections("runtime/include/burnish/a.h", "<hwy/highway.h>"), 1u);
+  EXPECT_EQ(objections("runtime/include/burnish/shading/a.h", "\"hwy/foreach_target.h\""), 1u);
+}
+
 TEST_F(IncludeRules, CountsNoFilesWhereThereAreNone) {
   EXPECT_EQ(check_includes(root_ / "elsewhere", 0).files, 0);
 }
