@@ -171,8 +171,7 @@ float srgb_from_linear(float linear) {
   return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
 }
 
-void write_png(const Image& image, const std::string& path, float exposure_stops) {
-  check_writable_image(image, path);
+std::vector<unsigned char> srgb_bytes(const Image& image, float exposure_stops) {
   const float scale = std::exp2(exposure_stops);
   std::vector<unsigned char> samples;
   samples.reserve(image.pixels.size() * 3);
@@ -180,6 +179,12 @@ void write_png(const Image& image, const std::string& path, float exposure_stops
     for (int c = 0; c < 3; ++c)
       samples.push_back(
           static_cast<unsigned char>(std::lround(255 * srgb_from_linear(pixel[c] * scale))));
+  return samples;
+}
+
+void write_png(const Image& image, const std::string& path, float exposure_stops) {
+  check_writable_image(image, path);
+  const std::vector<unsigned char> samples = srgb_bytes(image, exposure_stops);
 
   OutputFile file(path);
   png_image header = {};

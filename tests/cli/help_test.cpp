@@ -150,8 +150,7 @@ TEST(Usage, ContradictionsAreRefusedBeforeAnyFileIsRead) {
       {"render", "a.h5", "--env", "studio"},  // no output
       {"render", "a.h5", "--png", "a.png"},   // no light
       {"render", "a.h5", "--env", "studio", "--png", "a.png", "--compare", "b.png"},
-      {"render", "a.h5", "--env", "studio", "--png", "a.png", "--reference", "4", "--turntable",
-       "2"},
+      {"render", "a.h5", "--env", "studio", "--png", "a.png", "--reference", "4", "--frames", "2"},
       {"render", "a.h5", "--env", "studio", "--png", "a.png", "--size", "16384x16384"},
       {"render", "a.h5", "--env", "studio", "--png", "a.png", "--camera", "0,0,0,0,0,0,40"},
       {"render", "a.h5", "--env", "studio", "--png", "a.png", "--compare", "a.png", "--reference",

@@ -346,9 +346,8 @@ TEST_F(Pipeline, BenchmarkTimesFramesAndWritesNoPicture) {
 TEST_F(Pipeline, BenchmarkRefusesWhatItWouldNotDo) {
   const std::vector<std::vector<std::string>> refused = {
       {"--benchmark", "--png", folder_.file("a.png")},
-      {"--benchmark", "--turntable", "3"},
-      {"--benchmark", "--reference", "4"},
-      {"--frames", "3", "--png", folder_.file("a.png")}};
+      {"--benchmark", "-o", folder_.file("a.gif"), "--frames", "3"},
+      {"--benchmark", "--reference", "4"}};
   for (const auto& options : refused) {
     const RunResult result = burnish(joined({"render", transfer_, "--env", environment_}, options));
     EXPECT_EQ(result.exit_code, 1) << testing::PrintToString(options);
@@ -362,21 +361,6 @@ TEST_F(Pipeline, TermsBeyondTheBakedOnesAreRefused) {
       {"render", transfer_, "--env", environment_, "--terms", "9", "--png", folder_.file("a.png")});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_TRUE(is_one_clean_line(result.err)) << result.err;
-}
-
-TEST_F(Pipeline, TurntableStartsAtThePictureAndNumbersItsFrames) {
-  render("still", {});
-  expect_success(burnish({"render", transfer_, "--env", environment_, "--lights",
-                          folder_.file("fixture.json"), "--size", "48x32", "--turntable", "3", "-o",
-                          folder_.file("turn.exr"), "--png", folder_.file("turn.png")}));
-  EXPECT_TRUE(read_whole_file(folder_.file("turn.0000.exr")) ==
-              read_whole_file(folder_.file("still.exr")));
-  const Image first = read_image(folder_.file("turn.0000.exr"));
-  for (const char* name : {"turn.0001.exr", "turn.0002.exr"})
-    EXPECT_GT(relative_difference(read_image(folder_.file(name)), first), 0.05);
-  EXPECT_EQ(png_size(folder_.file("turn.0002.png")), std::pair(48u, 32u));
-  EXPECT_FALSE(std::filesystem::exists(folder_.file("turn.0003.exr")));
-  EXPECT_FALSE(std::filesystem::exists(folder_.file("turn.exr")));
 }
 
 TEST_F(Pipeline, ReferenceIsWrittenBesideAndItsErrorReported) {

@@ -19,8 +19,8 @@ const std::vector<Layer>& layers() {
        {"embree3/", "embree4/", "tbb/", "ceres/", "fmt/", "hwy/", "fcntl.h", "sys/", "unistd.h"}},
       {"tools",
        {},
-       {"CLI/", "Eigen/", "benchmark/", "nlohmann/", "fmt/", "tbb/", "signal.h", "unistd.h",
-        "sys/"}},
+       {"CLI/", "Eigen/", "benchmark/", "nlohmann/", "fmt/", "tbb/", "fcntl.h", "poll.h",
+        "signal.h", "spawn.h", "sys/", "unistd.h"}},
   };
   return all;
 }

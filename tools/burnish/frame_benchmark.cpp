@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "common/interrupt.h"
-#include "harness/studio_environment.h"
 
 namespace burnish::tools {
 namespace {
@@ -20,32 +19,22 @@ struct FrameTimes {
 
 FrameTimes draw(const FrameBenchmark& benchmark, const LookOptions& options, const SceneRays& rays,
                 double angle_rad, Look& look) {
-  const Vector3f up = up_direction(options.up);
-  const Eigen::Matrix3f turn =
-      Eigen::AngleAxisf(static_cast<float>(angle_rad), up).toRotationMatrix();
-  View view = benchmark.view;
-  view.camera = turned(view.camera, up, angle_rad);
-
   FrameTimes times;
   const Stopwatch prepare;
-  LightRig rig = look.rig;
-  rotate(rig, turn);
-  prepare_lights(rig, look.prepared, options.shading, look.lights);
-  EnvironmentLight background = look.environment_light();
-  background.world_from_environment = turn * look.world_from_environment;
-  look.filtered.environment_from_world = background.world_from_environment.transpose();
+  const Moment moment = turn_to(benchmark.turning, angle_rad, benchmark.view, options, look);
   times.prepare_ms = prepare.seconds() * 1e3;
 
   const Subject subject = look.subject();
   if (benchmark.per == ShadePer::vertex) {
     const Stopwatch shade;
-    shade_all_vertices(subject, look.lighting(), view.camera.origin, options.shading);
+    shade_all_vertices(subject, look.lighting(), moment.view.camera.origin, options.shading);
     times.shade_ms = shade.seconds() * 1e3;
     return times;
   }
-  const PrimaryHits hits = trace_primary_rays(rays, view);
+  const PrimaryHits hits = trace_primary_rays(rays, moment.view);
   RenderTimings timings;
-  render(subject, hits, look.lighting(), background, benchmark.per, options.shading, &timings);
+  render(subject, hits, look.lighting(), moment.background, benchmark.per, options.shading,
+         &timings);
   times.shade_ms = timings.pixels_ms;
   times.trace_ms = hits.trace_ms;
   return times;

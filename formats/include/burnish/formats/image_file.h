@@ -78,8 +78,11 @@ enum class ExrPixelType {
 void write_exr(const Image& image, const std::string& path,
                ExrPixelType type = ExrPixelType::half_float, bool latlong_environment = false);
 
-/// Writes an 8-bit RGB PNG file: values times 2^exposure_stops, clamped to 0..1 (NaN becomes 0),
-/// through the sRGB transfer function. Throws Error(ErrorKind::output).
+/// The picture as 8-bit sRGB, rows from the top, three bytes a pixel: values times
+/// 2^exposure_stops, clamped to 0..1 (NaN becomes 0), through the sRGB transfer function.
+std::vector<unsigned char> srgb_bytes(const Image& image, float exposure_stops = 0);
+
+/// Writes srgb_bytes as a PNG file. Throws Error(ErrorKind::output).
 void write_png(const Image& image, const std::string& path, float exposure_stops = 0);
 
 /// The sRGB transfer function (IEC 61966-2-1), 0..1 to 0..1; what is outside is clamped, NaN is 0.
