@@ -160,7 +160,7 @@ void run(const Options& options) {
   Material diffuse;
   diffuse.diffuse = Rgb::Constant(0.5f);
   SgFits fits;
-  for (const int lights : {10, 20, 40})
+  for (const int lights : {10, 20})
     fits[lights] = fit_sg_lights(whole.studio, lights, work.progress());
   std::vector<BenchRow> rows;
   for (const auto& [name, material] :
