@@ -22,6 +22,36 @@ if(BURNISH_SANITIZE)
     $<$<STREQUAL:$<TARGET_PROPERTY:TYPE>,EXECUTABLE>:${CMAKE_CURRENT_LIST_DIR}/sanitizer_options.cpp>)
 endif()
 
+# burnish_precompiled_headers(NAME LIBRARIES... HEADERS...): with BURNISH_PCH, the target NAME, whose
+# precompiled headers others take by burnish_precompile(). The headers are those that nearly every
+# source of the others includes anyway: a precompiled one hides that a source forgot to.
+function(burnish_precompiled_headers name)
+  if(NOT BURNISH_PCH)
+    return()
+  endif()
+  cmake_parse_arguments(arg "" "" "LIBRARIES;HEADERS;OPTIONS" ${ARGN})
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "")
+  add_library(${name} OBJECT ${source})
+  target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} burnish_warnings)
+  target_compile_options(${name} PRIVATE ${arg_OPTIONS})
+  target_precompile_headers(${name} PRIVATE ${arg_HEADERS})
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")  # or ccache never finds them again
+    target_compile_options(${name} PRIVATE "SHELL:-Xclang -fno-pch-timestamp")
+  endif()
+endfunction()
+
+# burnish_precompile(TARGETS... FROM NAME): NAME is of burnish_precompiled_headers(); the targets must
+# compile with its options.
+function(burnish_precompile)
+  cmake_parse_arguments(arg "" "FROM" "" ${ARGN})
+  if(BURNISH_PCH)
+    foreach(target IN LISTS arg_UNPARSED_ARGUMENTS)
+      target_precompile_headers(${target} REUSE_FROM ${arg_FROM})
+    endforeach()
+  endif()
+endfunction()
+
 # burnish_inline_checked(SOURCES...): has clang++ inline all of Eigen in these sources of this folder
 # in a sanitized build, where the checks else take most of its functions past the inliner's limit and
 # its loops are up to 50 times slower. All checks stay but one: a dangling reference to a local that
