@@ -26,6 +26,12 @@ std::vector<double> normalised_legendre(double z) {
   return p;
 }
 
+double azimuth_value(int function, double azimuth) {
+  const double angle = order_of(function) * azimuth;
+  if (function == 0) return 1;
+  return std::sqrt(2.0) * (function % 2 == 1 ? std::cos(angle) : std::sin(angle));
+}
+
 void add_azimuths(RingGrid& grid) {
   constexpr int kFunctions = azimuth_functions(kLightBands);
   constexpr size_t kWidth = panel_width(kFunctions);
@@ -35,10 +41,8 @@ void add_azimuths(RingGrid& grid) {
   grid.azimuth_rows.assign(kFunctions * row_width, 0.0f);
   for (size_t a = 0; a < azimuths; ++a)
     for (int j = 0; j < kFunctions; ++j) {
-      const double angle =
-          order_of(j) * 2 * kPi<double> * static_cast<double>(a) / static_cast<double>(azimuths);
-      const double value =
-          j == 0 ? 1 : std::sqrt(2.0) * (j % 2 == 1 ? std::cos(angle) : std::sin(angle));
+      const double value = azimuth_value(
+          j, 2 * kPi<double> * static_cast<double>(a) / static_cast<double>(azimuths));
       const auto column = static_cast<size_t>(j);
       grid.by_azimuth[a * kWidth + column] = static_cast<float>(value);
       grid.azimuth_rows[column * row_width + a] = static_cast<float>(value);
@@ -71,6 +75,16 @@ RingGrid make_ring_grid(int azimuths) {
 }
 
 }  // namespace
+
+void eval_light_harmonics(const Vector3d& direction, std::span<float> values) {
+  const std::vector<double> p = normalised_legendre(direction.z());
+  const double azimuth = std::atan2(direction.y(), direction.x());
+  size_t next = 0;
+  for (int l = 0; l < kLightBands; ++l)
+    for (int j = 0; j < azimuth_functions(l + 1); ++j)
+      values[next++] = static_cast<float>(p[static_cast<size_t>(l * kLightBands + order_of(j))] *
+                                          azimuth_value(j, azimuth));
+}
 
 const RingGrid& light_grid() {
   static const RingGrid grid = make_ring_grid<64>(128);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <span>
 #include <vector>
 
 #include "burnish/visibility/visibility_ladder.h"
@@ -22,10 +23,9 @@ inline constexpr int kLightHarmonics = kLightBands * kLightBands;
 /// another.
 inline constexpr int azimuth_functions(int bands) { return 2 * bands - 1; }
 inline constexpr int order_of(int function) { return (function + 1) / 2; }
-inline constexpr int index_in_ladder(int band, int function) {
-  const bool sine = function > 0 && function % 2 == 0;
-  return band * band + (sine ? band : 0) + order_of(function);
-}
+
+/// All of a unit direction: [kLightHarmonics].
+void eval_light_harmonics(const Vector3d& direction, std::span<float> values);
 
 /// Harmonics are a function of the height times one of the azimuth.
 struct RingGrid {
