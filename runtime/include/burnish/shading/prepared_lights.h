@@ -82,7 +82,7 @@ void prepare_lights(const LightRig& rig, const PreparedTransfer& transfer,
 /// @}
 
 /// prepare_lights in parts, for callers with threads of their own: first begin_lights, then
-/// finish_lights for each basis of the transfer, in any order and at the same time. What is
+/// finish_lights once for each basis of the transfer, in any order and at the same time. What is
 /// finished does not depend on it.
 /// @{
 void begin_lights(const LightRig& rig, const PreparedTransfer& transfer,

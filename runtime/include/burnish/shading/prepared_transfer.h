@@ -16,15 +16,15 @@ enum class RowFormat {
 /// A transfer as the frame calls read it: prepared once, then immutable, and shared between
 /// threads. It holds all that shading needs; the transfer itself may go.
 struct PreparedTransfer {
-  /// A basis of SSDFs: a row of its eigenvectors for each texel, padded with zeros to whole vectors,
-  /// as [resolution^2][padded_terms(terms)], in the transfer's format.
+  /// A basis of SSDFs: a row of its eigenvectors for each texel, padded with zeros to whole
+  /// vectors, as [resolution^2][padded_terms(terms)], in the transfer's format.
   struct Basis {
     std::vector<float> mean;             ///< [resolution^2]
     std::vector<std::uint16_t> eigen16;  ///< IEEE 754 binary16
     std::vector<float> eigen32;
   };
-  /// A basis of the visibility ladder as pictures of the sphere, in the directions of the grid by
-  /// which lights are integrated (prepared_lights.h), and as it was baked.
+  /// A basis of the visibility ladder as pictures of the sphere, in the directions in which lights
+  /// are multiplied by it (docs/maths.md, "Irradiance table"), and as it was baked.
   struct Ladder {
     std::vector<float> images;  ///< of each direction: the terms', then the mean's, padded
     LadderBasis harmonics;

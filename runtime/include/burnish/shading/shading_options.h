@@ -31,8 +31,8 @@ struct ShadingOptions {
   /// the visibility ladder, where one was baked. False: through the SSDF, as the papers do.
   bool ladder = true;
   /// The environment's lobes up to this many times as sharp as the crossover come through the
-  /// ladder, too, 1..1000. They cost nothing there, but 20 ns each where they come through the SSDF;
-  /// what they err by more is measured in docs/runtime.md, "Sharp lobes through the ladder".
+  /// ladder, too, 1..1000. They cost nothing there, but 20 ns each where they come through the
+  /// SSDF; what they err by more is measured in docs/runtime.md, "Sharp lobes through the ladder".
   float ladder_reach = 2;
   /// prepare_lights splits an environment's lobes wider than this into narrower ones
   /// (lobe_split.h), each with a boundary of its own; 0: none. Costs as many times the lobes; buys
