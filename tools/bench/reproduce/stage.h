@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "burnish/precompute/bake.h"
 #include "harness/error_metrics.h"
 #include "harness/procedural_scenes.h"
 #include "harness/vertex_truth.h"
