@@ -125,7 +125,7 @@ TEST(Usage, UnknownCommandNamesTheKnownOnes) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.err,
             "burnish: unknown command 'frobnicate', expected one of bake info fit-light fit-brdf "
-            "render shade demo\n");
+            "render shade tune demo\n");
 }
 
 TEST(Usage, ValuesOutOfRangeNameTheRange) {

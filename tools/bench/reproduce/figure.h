@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "bench.h"
+#include "bench/bench.h"
 #include "burnish/light/environment_map.h"
 #include "harness/truth_cache.h"
 

@@ -1,4 +1,4 @@
-#include "reproduce/figure.h"
+#include "bench/reproduce/figure.h"
 
 namespace burnish::tools {
 

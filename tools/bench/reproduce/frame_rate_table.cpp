@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
+#include "bench/reproduce/stage.h"
 #include "common/interrupt.h"
 #include "harness/rivals/runtime_rival.h"
-#include "reproduce/stage.h"
 
 namespace burnish::tools {
 namespace {

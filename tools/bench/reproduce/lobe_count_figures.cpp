@@ -7,11 +7,11 @@
 
 #include <fmt/format.h>
 
+#include "bench/reproduce/stage.h"
 #include "common/interrupt.h"
 #include "harness/rivals/runtime_rival.h"
 #include "harness/rivals/sg_rival.h"
 #include "harness/tone_map.h"
-#include "reproduce/stage.h"
 
 namespace burnish::tools {
 namespace {

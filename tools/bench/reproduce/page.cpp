@@ -1,4 +1,4 @@
-#include "reproduce/page.h"
+#include "bench/reproduce/page.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #include <span>
 #include <string>
 
-#include "reproduce/figure.h"
+#include "bench/reproduce/figure.h"
 
 /// The page of reproduced figures, and the files of each.
 namespace burnish::tools {

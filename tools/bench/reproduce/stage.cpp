@@ -1,4 +1,4 @@
-#include "reproduce/stage.h"
+#include "bench/reproduce/stage.h"
 
 #include <cmath>
 

@@ -4,12 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "bench/moving_frame.h"
+#include "bench/reproduce/figure.h"
 #include "burnish/precompute/bake.h"
 #include "harness/error_metrics.h"
 #include "harness/procedural_scenes.h"
 #include "harness/vertex_truth.h"
-#include "moving_frame.h"
-#include "reproduce/figure.h"
 
 /// What the figures of scenes are made on: a procedural scene, baked and lit by the studio.
 namespace burnish::tools {

@@ -1,11 +1,11 @@
 // Figures 11 and 12 of xu2013asg: compressed visibility, and anisotropic balls in a dish.
 #include <fmt/format.h>
 
+#include "bench/reproduce/stage.h"
 #include "common/interrupt.h"
 #include "harness/rivals/runtime_rival.h"
 #include "harness/rivals/uncompressed_rival.h"
 #include "harness/tone_map.h"
-#include "reproduce/stage.h"
 
 namespace burnish::tools {
 namespace {
