@@ -35,6 +35,8 @@ void add_bake_dials(std::vector<GridPoint>& grid, const GridOptions& options) {
   add_dial(grid, base, "bases {}", {1, 2, 4, 16}, [](Settings& s, int n) { s.bake.bases = n; });
   add_dial(grid, base, "resolution {}", {32, 64},
            [](Settings& s, int n) { s.bake.resolution = n; });
+  add_dial(grid, base, "directions {}", {64, 256},
+           [](Settings& s, int n) { s.bake.directions = n; });
 }
 
 void add_light_dials(std::vector<GridPoint>& grid, const Settings& base) {
@@ -85,8 +87,8 @@ std::vector<GridPoint> tradeoff_grid(const std::vector<Material>& materials,
                                      const GridOptions& options) {
   std::vector<GridPoint> grid;
   for (const Quality quality : kQualities)
-    for (const int lobes : {6, 10, 24})
-      for (const int terms : {16, 48}) {
+    for (const int lobes : {6, options.base.lobes, 24})
+      for (const int terms : {16, options.base.bake.terms}) {
         Settings settings = options.base;
         settings.shading = shading_options(quality);
         settings.lobes = lobes;
@@ -105,6 +107,7 @@ std::vector<GridPoint> tradeoff_grid(const std::vector<Material>& materials,
       Settings settings = options.base;
       settings.shading = paper_shading_options(model);
       settings.bake.ladder_terms = 0;
+      if (options.bakes) settings.bake.bases = 1;
       grid.push_back({name, settings});
     }
   return grid;

@@ -19,7 +19,9 @@ struct GridPoint {
 /// Which dials a grid varies. The rest are as in `base`.
 struct GridOptions {
   Settings base;
-  bool bakes = true;   ///< also dials of the bake that need another one: bases and resolution
+  /// Also dials of the bake that need another one: bases, resolution and directions; and the
+  /// papers' choices with their one basis.
+  bool bakes = true;
   bool papers = true;  ///< also the papers' own choices
 };
 
