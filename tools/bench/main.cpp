@@ -12,6 +12,8 @@ int main(int argc, char** argv) {
               declare_light_bench},
       Command{"material", "error of specular materials as lobes, by model, roughness and view",
               declare_material_bench},
+      Command{"report", "one HTML page of what tradeoff and reproduce measured",
+              declare_report_bench},
       Command{"reproduce", "the papers' figures and tables, made again: pictures and numbers",
               declare_reproduce_bench},
       Command{"rivals", "other ways to shade a scene's vertices: errors and times",
@@ -19,6 +21,8 @@ int main(int argc, char** argv) {
       Command{"shade", "the frame: times, errors, bounds and growth", declare_shade_bench},
       Command{"sphere", "ns a call of each operator of the sphere, and the error it has for that",
               declare_sphere_bench},
+      Command{"tradeoff", "settings and rivals on one scene: errors against time, memory and bake",
+              declare_tradeoff_bench},
   };
   const Program program{"burnish-bench", "Measures the stations of burnish, one by one.",
                         kStations};

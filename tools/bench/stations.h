@@ -9,9 +9,11 @@ std::function<void()> declare_bake_bench(CLI::App& app);
 std::function<void()> declare_guard_bench(CLI::App& app);
 std::function<void()> declare_light_bench(CLI::App& app);
 std::function<void()> declare_material_bench(CLI::App& app);
+std::function<void()> declare_report_bench(CLI::App& app);
 std::function<void()> declare_reproduce_bench(CLI::App& app);
 std::function<void()> declare_rivals_bench(CLI::App& app);
 std::function<void()> declare_shade_bench(CLI::App& app);
 std::function<void()> declare_sphere_bench(CLI::App& app);
+std::function<void()> declare_tradeoff_bench(CLI::App& app);
 
 }  // namespace burnish::tools
