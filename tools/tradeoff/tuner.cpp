@@ -1,7 +1,6 @@
 #include "tradeoff/tuner.h"
 
 #include <algorithm>
-#include <numeric>
 
 namespace burnish::tools {
 namespace {
@@ -29,14 +28,51 @@ class Target {
   double miss(const TrialOutcome& outcome) const {
     return target_.error > 0 ? promised_error(outcome) : outcome.frame_ms;
   }
-  /// Of a point that `tried` is no dearer than: whether it cannot be chosen.
+  /// Of a point that `tried` is no dearer than: whether it need not be run.
   bool rules_out(const TriedPoint& tried) const {
-    return target_.error > 0 ? met(tried.outcome) : tried.outcome.frame_ms > target_.ms;
+    if (target_.error > 0) return met(tried.outcome) && (!tried.check || met(*tried.check));
+    return tried.outcome.frame_ms > target_.ms;
   }
 
  private:
   TuneTarget target_;
 };
+
+/// Runs what is not run yet and not ruled out.
+void run_points(const std::vector<GridPoint>& grid, const Target& target, const TuneCalls& calls,
+                std::vector<bool>& was_run, TuneResult& result) {
+  for (size_t i = 0; i < grid.size(); ++i) {
+    const auto ruled_out = [&](const TriedPoint& tried) {
+      return no_dearer(tried.point, grid[i]) && target.rules_out(tried);
+    };
+    if (!was_run[i] && std::none_of(result.tried.begin(), result.tried.end(), ruled_out)) {
+      result.tried.push_back({grid[i], calls.run(grid[i].settings), {}});
+      was_run[i] = true;
+    }
+    if (calls.step) calls.step(i + 1, grid.size());
+  }
+}
+
+/// The best that meets the target and is not checked yet.
+std::optional<size_t> best_unchecked(const std::vector<TriedPoint>& tried, const Target& target) {
+  std::optional<size_t> best;
+  for (size_t i = 0; i < tried.size(); ++i) {
+    if (tried[i].check || !target.met(tried[i].outcome)) continue;
+    if (!best || target.cost(tried[i].outcome) < target.cost(tried[*best].outcome)) best = i;
+  }
+  return best;
+}
+
+/// By the check, where there is one.
+std::optional<size_t> nearest_of(const std::vector<TriedPoint>& tried, const Target& target) {
+  std::optional<size_t> nearest;
+  const auto miss = [&](size_t i) {
+    return target.miss(tried[i].check ? *tried[i].check : tried[i].outcome);
+  };
+  for (size_t i = 0; i < tried.size(); ++i)
+    if (!nearest || miss(i) < miss(*nearest)) nearest = i;
+  return nearest;
+}
 
 }  // namespace
 
@@ -48,30 +84,17 @@ TuneResult tune(const std::vector<GridPoint>& grid, const TuneTarget& wanted,
                 const TuneCalls& calls) {
   const Target target(wanted);
   TuneResult result;
-  for (size_t i = 0; i < grid.size(); ++i) {
-    const bool ruled_out =
-        std::any_of(result.tried.begin(), result.tried.end(), [&](const TriedPoint& tried) {
-          return no_dearer(tried.point, grid[i]) && target.rules_out(tried);
-        });
-    if (!ruled_out) result.tried.push_back({grid[i], calls.run(grid[i].settings)});
-    if (calls.step) calls.step(i + 1, grid.size());
+  std::vector<bool> was_run(grid.size());
+  while (!result.chosen) {
+    // Again after each check that failed: what it ruled out may be needed now.
+    run_points(grid, target, calls, was_run, result);
+    const std::optional<size_t> best = best_unchecked(result.tried, target);
+    if (!best) break;
+    TriedPoint& tried = result.tried[*best];
+    tried.check = calls.check(tried.point.settings);
+    if (target.met(*tried.check)) result.chosen = best;
   }
-  std::vector<size_t> order(result.tried.size());
-  std::iota(order.begin(), order.end(), size_t{0});
-  const auto outcome = [&](size_t i) -> const TrialOutcome& { return result.tried[i].outcome; };
-  std::sort(order.begin(), order.end(),
-            [&](size_t a, size_t b) { return target.cost(outcome(a)) < target.cost(outcome(b)); });
-  for (const size_t i : order) {
-    if (!target.met(outcome(i))) continue;
-    result.tried[i].check = calls.check(result.tried[i].point.settings);
-    if (!target.met(*result.tried[i].check)) continue;
-    result.chosen = i;
-    break;
-  }
-  const auto nearest = std::min_element(order.begin(), order.end(), [&](size_t a, size_t b) {
-    return target.miss(outcome(a)) < target.miss(outcome(b));
-  });
-  if (nearest != order.end()) result.nearest = *nearest;
+  result.nearest = nearest_of(result.tried, target);
   return result;
 }
 

@@ -41,7 +41,8 @@ struct TuneCalls {
 
 /// Points are tried from the cheap ones on, but those of which another that is no dearer in any
 /// dial meets the target (or, for a time, is too slow already). The best of them by run() is
-/// checked, then the next, until one holds.
+/// checked; where it fails, those that it had ruled out are tried, and the next is checked, until
+/// one holds.
 TuneResult tune(const std::vector<GridPoint>& grid, const TuneTarget& target,
                 const TuneCalls& calls);
 
