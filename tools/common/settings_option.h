@@ -16,7 +16,8 @@ struct SettingsSection {
   std::function<void(CLI::App&)> declare;
 };
 
-/// Declares --settings FILE.json, whose dials set options as if they stood on the command line.
+/// Declares --settings FILE.json, whose dials set options as if they stood on the command line, in
+/// the order that the options are declared in.
 /// Call it before the options are declared: they are taken in that order, so that those given
 /// override the file's. Each value goes through its option's own check; a bad one, and a dial that
 /// there is not, throws the Error of the file.

@@ -5,6 +5,9 @@
 namespace burnish::tools {
 namespace {
 
+/// As --coarsest says "all".
+constexpr int kMostDirections = 1024;
+
 const char* name_of(VisibilityModel model) {
   switch (model) {
     case VisibilityModel::cap:
@@ -38,12 +41,17 @@ SettingsFile settings_file(const Settings& settings) {
     return DialSetting{name, fmt::format("{}", value)};
   };
   SettingsFile file;
-  file.bake = {number("directions", bake.directions),
-               number("resolution", bake.resolution),
-               number("terms", bake.terms),
-               number("bases", bake.bases),
-               number("ladder-terms", bake.ladder_terms),
-               number("training-vertices", bake.training_vertices)};
+  file.bake = {
+      number("directions", bake.directions),
+      {"coarsest", bake.coarsest >= kMostDirections ? "all" : fmt::format("{}", bake.coarsest)},
+      number("origin-offset", bake.origin_offset),
+      number("resolution", bake.resolution),
+      number("terms", bake.terms),
+      number("amplitude", bake.amplitude_rad),
+      number("bases", bake.bases),
+      number("ladder-terms", bake.ladder_terms),
+      number("training-vertices", bake.training_vertices),
+      number("residual-vertices", bake.residual_vertices)};
   file.lights = {number("lobes", settings.lobes)};
   file.shading = {
       {"visibility", name_of(shading.visibility)},

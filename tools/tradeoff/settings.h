@@ -16,7 +16,8 @@ struct Settings {
   bool specular_from_map = true;  ///< highlights reflect the map, else the fitted lights
 };
 
-/// Every dial under the name that it has on the command line, by the commands that take it.
+/// Every dial that speed or error depends on, under the name that it has on the command line, by
+/// the commands that take it.
 SettingsFile settings_file(const Settings& settings);
 
 /// The same: {"bake": {"directions": "512", ...}, "lights": {"lobes": "10"}, "shading": {...}}.
