@@ -60,11 +60,11 @@ TEST(WithTerms, KeepsTheFirstTermsOfEachVertexAndTexel) {
   basis.terms = 3;
   basis.eigen = {1, 2, 3, 4, 5, 6};
   transfer.bases = {basis};
-  const Transfer cut = with_terms(transfer, 2, 0);
+  const Transfer cut = with_terms(transfer, 2);
   EXPECT_EQ(cut.coefficients, (std::vector<float>{1, 2, 4, 5}));
   EXPECT_EQ(cut.bases[0].eigen, (std::vector<float>{1, 2, 4, 5}));
   EXPECT_EQ(cut.terms(), 2);
-  EXPECT_EQ(with_terms(transfer, 9, 9).coefficients, transfer.coefficients);
+  EXPECT_EQ(with_terms(transfer, 9).coefficients, transfer.coefficients);
 }
 
 TEST(TrialOfABall, TellsWhatSettingsCostAndErr) {
