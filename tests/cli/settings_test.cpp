@@ -37,7 +37,8 @@ class Command {
     add_settings_option(app_, {{&SettingsFile::bake, "bake", bake},
                                {&SettingsFile::lights, "lights", lights},
                                {&SettingsFile::shading, "shading", shading}});
-    for (const std::function<void(CLI::App&)>& declare : {bake, lights, shading}) declare(app_);
+    for (const auto& declare : std::vector<std::function<void(CLI::App&)>>{bake, lights, shading})
+      declare(app_);
   }
   Settings parse(std::vector<std::string> arguments) {
     std::reverse(arguments.begin(), arguments.end());  // CLI11 takes them from the back

@@ -1,5 +1,3 @@
-#include "tradeoff/trial.h"
-
 #include <gtest/gtest.h>
 
 #include "harness/rivals/runtime_rival.h"
@@ -7,6 +5,7 @@
 #include "harness/shapes.h"
 #include "harness/studio_environment.h"
 #include "tradeoff/grid.h"
+#include "tradeoff/trial.h"
 
 namespace burnish::tools {
 namespace {
@@ -123,7 +122,9 @@ TEST(TrialOfABall, PicturesAreCloseToTheTruth) {
   EXPECT_LT(error.value, 0.5);
   // What is behind the mesh is the map in both.
   for (size_t i = 0; i < truth.hit.size(); ++i)
-    if (!truth.hit[i] && i < 24) EXPECT_TRUE((truth.radiance.pixels[i] > 0).any()) << i;
+    if (!truth.hit[i] && i < 24) {
+      EXPECT_TRUE((truth.radiance.pixels[i] > 0).any()) << i;
+    }
 }
 
 TEST(TrialKey, DependsOnMaterialViewsAndGoal) {

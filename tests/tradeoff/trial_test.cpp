@@ -7,9 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "burnish/formats/transfer_file.h"
+#include "formats/files.h"
 #include "harness/render.h"
 #include "harness/studio_environment.h"
-#include "formats/files.h"
 #include "tradeoff/grid.h"
 
 namespace burnish::tools {
