@@ -87,8 +87,8 @@ TEST_F(SettingsFileOnDisk, BadFilesAreNamedWithPlaceAndWhatWasExpected) {
     std::string json, place, expected;
   } cases[] = {
       {"terms 16", "line 1", "column"},
-      {"[]", "format", "expected"},
-      {R"({"format_version": 1})", "format", "missing"},
+      {"[]", "line 1", "is array, expected an object"},
+      {R"({"format_version": 1})", "line 1", "has no field 'format'"},
       {R"({"format": "burnish lights", "format_version": 2})", "/format",
        "'burnish lights', expected 'burnish settings'"},
       {R"({"format": "burnish settings", "format_version": 1.5})", "/format_version",
