@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
-#include "bench.h"
+#include "bench/bench.h"
+#include "bench/slice_light_error.h"
 #include "burnish/material/specular_slice.h"
 #include "common/interrupt.h"
 #include "common/options.h"
 #include "distribution_bench.h"
 #include "material_times.h"
-#include "specular_truth.h"
 #include "stations.h"
 
 namespace burnish::tools {
@@ -62,70 +62,12 @@ constexpr std::array<NamedForm, 6> kForms = {{{"paper", {SpecularForm::peak, 1, 
                                               {"5", {SpecularForm::moments, 5, 3}},
                                               {"9", {SpecularForm::moments, 9, 3}}}};
 constexpr std::array kViews_deg = {0.0, 30.0, 60.0, 75.0, 80.0, 85.0};
-constexpr std::array kAzimuths_deg = {3.0, 25.0, 47.0, 66.0, 88.0};
-
-/// Smooth lights all around above the surface, and a little below.
-std::vector<SphericalGaussian<double>> smooth_lights() {
-  std::vector<SphericalGaussian<double>> lights;
-  constexpr int kLights = 24;
-  constexpr double kGoldenAngle = 2.399963229728653;
-  for (int k = 0; k < kLights; ++k) {
-    const double z = 1 - (k + 0.5) / kLights * 1.6, sine = std::sqrt(1 - z * z);
-    const double azimuth = k * kGoldenAngle;
-    lights.push_back(
-        {{sine * std::cos(azimuth), sine * std::sin(azimuth), z}, k % 2 == 0 ? 12.0 : 2.0, 1.0});
-  }
-  return lights;
-}
-
-Vector3f view_direction(double polar_deg, double azimuth_deg) {
-  const double polar = polar_deg * kPi<double> / 180, azimuth = azimuth_deg * kPi<double> / 180;
-  return Vector3<double>(std::sin(polar) * std::cos(azimuth), std::sin(polar) * std::sin(azimuth),
-                         std::cos(polar))
-      .cast<float>();
-}
-
-/// Errors of the forms for one view angle, over azimuths and lights.
-struct Errors {
-  double relative_rms = 0;
-  double energy = 0;  ///< relative, the worst over azimuths, with its sign
-};
-
-std::array<Errors, kForms.size()> measure_view(
-    const Material& material, double view_deg,
-    const std::vector<SphericalGaussian<double>>& lights) {
-  std::array<Errors, kForms.size()> errors;
-  std::array<double, kForms.size()> squares{};
-  double truth_squares = 0;
-  std::array<PreparedMaterial, kForms.size()> prepared;
-  for (size_t f = 0; f < kForms.size(); ++f)
-    prepared[f] = prepare_material(material, kForms[f].options);
-  for (const double azimuth_deg : kAzimuths_deg) {
-    const Vector3f outgoing = view_direction(view_deg, azimuth_deg);
-    const Reflected truth = integrate_brdf(material, outgoing, lights);
-    for (const double value : truth.by_light) truth_squares += value * value;
-    for (size_t f = 0; f < kForms.size(); ++f) {
-      std::array<SliceLobe, kMaxSpecularTeeth> slice;
-      const int count = specular_slice(prepared[f], outgoing, slice);
-      const Reflected found = integrate_slice(std::span(slice).first(static_cast<size_t>(count)),
-                                              kForms[f].options.form, lights);
-      for (size_t l = 0; l < lights.size(); ++l) {
-        const double error = found.by_light[l] - truth.by_light[l];
-        squares[f] += error * error;
-      }
-      const double energy = found.energy / truth.energy - 1;
-      if (std::abs(energy) > std::abs(errors[f].energy)) errors[f].energy = energy;
-    }
-  }
-  for (size_t f = 0; f < kForms.size(); ++f)
-    errors[f].relative_rms = std::sqrt(squares[f] / truth_squares);
-  return errors;
-}
 
 /// Rows of the slice's error and of its energy, a column an angle of view.
 void measure_slices(const NamedModel& model, std::vector<BenchRow>& rows,
                     std::vector<BenchRow>& energies) {
-  const auto lights = smooth_lights();
+  std::array<SpecularOptions, kForms.size()> forms;
+  for (size_t f = 0; f < kForms.size(); ++f) forms[f] = kForms[f].options;
   for (const double alpha : {0.05, 0.1, 0.2, 0.3, 0.5}) {
     for (const double anisotropy : {1.0, 3.0, 10.0}) {
       throw_if_interrupted();
@@ -133,9 +75,9 @@ void measure_slices(const NamedModel& model, std::vector<BenchRow>& rows,
       material.alpha_x = static_cast<float>(alpha * std::sqrt(anisotropy));
       material.alpha_y = static_cast<float>(alpha / std::sqrt(anisotropy));
       if (material.alpha_x > kMaxAlpha) continue;
-      std::array<std::array<Errors, kForms.size()>, kViews_deg.size()> errors;
+      std::array<std::vector<SliceLightError>, kViews_deg.size()> errors;
       tbb::parallel_for(size_t{0}, kViews_deg.size(), [&](size_t v) {
-        errors[v] = measure_view(material, kViews_deg[v], lights);
+        errors[v] = slice_light_errors(material, kViews_deg[v], forms);
       });
       for (size_t f = 0; f < kForms.size(); ++f) {
         BenchRow row = {{"what", "slice"}, {"model", model.name}};
