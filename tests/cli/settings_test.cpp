@@ -200,7 +200,7 @@ TEST(SettingsProgram, TuneWritesWhatBakeAndRenderTake) {
     return burnish(
         joined({"tune", folder.file("box.obj"), folder.file("env.exr"), "-o", file, "--report",
                 folder.file("a.report.json"), "--directions", "64", "--resolution", "32",
-                "--material", "matte", "--views", "1", "--vertices", "8", "--noise", "1"},
+                "--material", "satin", "--views", "1", "--vertices", "8", "--noise", "1"},
                target));
   };
   // The first point of the grid is accurate enough: all others are dearer.

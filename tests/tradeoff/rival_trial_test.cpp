@@ -48,7 +48,7 @@ TEST(EyesAround, StandOnACircleAboutTheTarget) {
   EXPECT_EQ(eyes[0], camera.origin);
   // Halfway round, the other side of the axis; roundings of a rotation.
   EXPECT_LT((eyes[2] - Vector3f(0, 2, -3)).norm(), 1e-5f);
-  for (const Vector3f& eye : eyes) EXPECT_EQ(eye.y(), 2);
+  for (const Vector3f& eye : eyes) EXPECT_NEAR(eye.y(), 2, 1e-5);
 }
 
 TEST(WithTerms, KeepsTheFirstTermsOfEachVertexAndTexel) {
