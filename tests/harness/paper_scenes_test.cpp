@@ -63,7 +63,7 @@ TEST(PaperScenes, HaveClosedBodiesOnTheirFloor) {
 
 TEST(PaperScenes, AreBrushedWhereThePaperIs) {
   for (const char* name : {"dish", "teapot", "cylinder", "dish-balls", "dish-card"}) {
-    const Material& material = make_scene(name).materials[0];
+    const Material material = make_scene(name).materials[0];
     EXPECT_NEAR(
         std::max(material.alpha_x, material.alpha_y) / std::min(material.alpha_x, material.alpha_y),
         10, 1e-4)
