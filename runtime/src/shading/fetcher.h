@@ -15,7 +15,7 @@ class Fetcher {
  public:
   /// Ranges beyond the first kMost are left to be waited for.
   void add(const void* data, size_t bytes) {
-    if (end_ < kMost) ranges_[end_++] = {static_cast<const char*>(data), bytes};
+    if (bytes > 0 && end_ < kMost) ranges_[end_++] = {static_cast<const char*>(data), bytes};
   }
   size_t waiting() const { return end_ - next_; }
   /// The next ranges, at most so many.
