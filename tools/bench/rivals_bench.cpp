@@ -84,7 +84,7 @@ std::vector<MakeRival> all_rivals(const BakeOptions& bake, bool is_glossy, const
   add_sg_rivals(is_glossy, fits, rivals);
   for (const auto& [order, window] :
        {std::pair(3, false), {4, false}, {5, false}, {6, false}, {5, true}})
-    rivals.push_back([order, window, &work](const RivalScene& scene) {
+    rivals.push_back([order = order, window = window, &work](const RivalScene& scene) {
       return sh_rival(scene, {.order = order, .window = window}, work.progress());
     });
   add_uncompressed_rivals(bake, work, rivals);
