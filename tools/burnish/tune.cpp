@@ -142,8 +142,7 @@ std::function<void()> declare_tune(CLI::App& app) {
       ->required();
   add_bake_options(app, options->base.bake);
   // Found, not given; and the bake's own target.
-  for (const char* found : {"--terms", "--target-error"})
-    app.remove_option(app.get_option(found));
+  for (const char* found : {"--terms", "--target-error"}) app.remove_option(app.get_option(found));
   add_number(app, "--target-error", "E", options->target.error, {0.0, 10.0},
              "relative L2 error of the vertices' radiance: the fastest settings below it");
   add_number(app, "--target-ms", "T", options->target.ms, {0.0, 1e6, "ms"},
