@@ -73,10 +73,9 @@ HWY_NOINLINE void load_rows(D d, const PreparedTransfer& transfer, size_t terms,
   for (size_t r = 0; r < block.row_count; ++r) {
     VisibilityRow<T>& row = block.row[r];
     // A mean of vertices of one basis; its weight among other bases is the row's.
-    const T inverse = 1 / row.weight;
     for (size_t n = 0; n < static_cast<size_t>(row.vertex_count); ++n) {
       const size_t first = row.vertex[n] * size;
-      const T weight = row.vertex_weight[n] * inverse;
+      const T weight = row.vertex_weight[n] / row.weight;
       add_coefficients(d, transfer, first, terms, weight, n == 0, row.ssdf);
       if (ladder)
         add_coefficients(d, transfer, first + static_cast<size_t>(transfer.terms), ladder_terms,
