@@ -357,7 +357,7 @@ TEST(LocalLights, AreFiniteWhereverTheyAre) {
   }
 }
 
-TEST(PrepareLights, RefusesLocalLightsByTheirNumberAndDropsBlackOnes) {
+TEST(PrepareLights, RefusesLightsByTheirNumberAndDropsBlackOnes) {
   const auto error_of = [](const LightRig& rig) -> std::string {
     try {
       prepare_lights(rig, kOpen, {});
@@ -382,7 +382,11 @@ TEST(PrepareLights, RefusesLocalLightsByTheirNumberAndDropsBlackOnes) {
   rig = {};
   rig.spheres.resize(3);
   rig.spheres[1].radiance.y() = 1;
-  EXPECT_EQ(prepare_lights(rig, kOpen, {}).spheres.size(), 1u);
+  rig.lobes.resize(3);
+  rig.lobes[1].color.z() = -1;
+  const PreparedLights lights = prepare_lights(rig, kOpen, {});
+  EXPECT_EQ(lights.spheres.size(), 1u);
+  EXPECT_EQ(lights.lobes.size(), 1u);
 }
 
 }  // namespace

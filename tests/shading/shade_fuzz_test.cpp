@@ -273,8 +273,11 @@ TEST(ShadeFuzz, PointsBetweenVerticesAreFiniteAndNotNegative) {
       ShadingPoint point = vertex_shading_point(c.prepared, random() % count);
       point.vertices = {std::uint32_t(random() % count), std::uint32_t(random() % count),
                         std::uint32_t(random() % count)};
-      point.weight = std::array<std::array<float, 3>, 4>{
-          {{1, 0, 0}, {1e-30f, 1, 0}, {0, 0, 1}, {0.25f, 0.25f, 0.5f}}}[random() % 4];
+      point.weight = std::array<std::array<float, 3>, 5>{{{1, 0, 0},
+                                                          {1e-30f, 1, 0},
+                                                          {1e-42f, 1, 0},
+                                                          {0, 0, 1},
+                                                          {0.25f, 0.25f, 0.5f}}}[random() % 5];
       points.push_back(point);
       const Frame<float>& f = point.frame;
       // Along the axes, at the horizon, just above it, and below.

@@ -72,7 +72,8 @@ HWY_NOINLINE void load_rows(D d, const PreparedTransfer& transfer, size_t terms,
   const size_t ladder_terms = static_cast<size_t>(transfer.ladder_terms);
   for (size_t r = 0; r < block.row_count; ++r) {
     VisibilityRow<T>& row = block.row[r];
-    // A mean of vertices of one basis; its weight among other bases is the row's.
+    // A mean of vertices of one basis; its weight among other bases is the row's, which has no
+    // finite inverse where it is denormal.
     for (size_t n = 0; n < static_cast<size_t>(row.vertex_count); ++n) {
       const size_t first = row.vertex[n] * size;
       const T weight = row.vertex_weight[n] / row.weight;
@@ -150,7 +151,8 @@ HWY_INLINE void shade_block(D d, const PreparedTransfer& transfer, const Materia
   const size_t terms = static_cast<size_t>(
       options.terms > 0 ? std::min(options.terms, transfer.terms) : transfer.terms);
   const bool diffuse = materials.is_diffuse(block.count) && !is_dark(*lighting.lights);
-  const bool specular = materials.is_specular(block.count);
+  const bool specular =
+      materials.is_specular(block.count) && (lighting.environment || !is_dark(*lighting.lights));
   pad_block(block);
   if (diffuse || specular) load_rows(d, transfer, terms, diffuse, block);
   BlockRgb<T> irradiance, albedo;

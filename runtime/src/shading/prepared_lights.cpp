@@ -98,6 +98,7 @@ void begin_lights(const LightRig& rig, const PreparedTransfer& transfer,
     lobe.lobe = light.lobe;
     lobe.lobe.amplitude = 1;
     lobe.color = light.color * light.lobe.amplitude;
+    if ((lobe.color == 0).all()) continue;
     lobe.integral = integral(lobe.lobe, options.integral);
     lobe.moments = asg_moments(light.lobe.bandwidth_x, light.lobe.bandwidth_y);
     if (ladder)
