@@ -251,5 +251,31 @@ TEST(IrradianceTable, IsBlackBelowTheHorizonAndWhereNothingIsSeen) {
   }
 }
 
+/// The dark lobe may be hidden from a point that sees the bright one: then it is brighter than
+/// without shadows.
+TEST(IrradianceTable, OfLightsOfBothSignsIsTheirDifference) {
+  SCOPED_TRACE(kSeed);
+  std::mt19937 random(kSeed);
+  int beyond = 0;
+  for (int i = 0; i < 60; ++i) {
+    const Receiver receiver = random_receiver(5, 7, random);
+    const std::vector bright = {random_lobe(3, 8, random)}, dark = {random_lobe(4, 4, random)};
+    const Truth of_bright = truth_of(receiver, bright), of_dark = truth_of(receiver, dark);
+    // Where neither is held between nothing and all, they are linear in the lights.
+    const auto is_held = [](const Truth& truth) {
+      return truth.shadowed <= 0.02 * truth.open || truth.shadowed >= 0.98 * truth.open;
+    };
+    if (is_held(of_bright) || is_held(of_dark)) continue;
+    LightRig rig = rig_of(bright);
+    rig.lobes.push_back(rig_of(dark).lobes[0]);
+    rig.lobes[1].color *= -1;
+    const double difference = of_bright.shadowed - of_dark.shadowed;
+    const double scale = largest_irradiance(bright) + largest_irradiance(dark);
+    EXPECT_NEAR(irradiance(receiver.transfer(), rig).x(), difference, 0.006 * scale) << i;
+    beyond += difference > of_bright.open - of_dark.open + 0.02 * scale;
+  }
+  EXPECT_GT(beyond, 3);
+}
+
 }  // namespace
 }  // namespace burnish::test

@@ -1,8 +1,8 @@
 #include <fmt/format.h>
 
-#include "burnish/formats/error.h"
 #include "common/machine.h"
 #include "common/options.h"
+#include "common/program.h"
 #include "common/work.h"
 #include "stations.h"
 #include "tradeoff/guard.h"
@@ -38,11 +38,10 @@ void run(const Options& options) {
   for (const std::string& line : verdict.worse) work.print("worse: " + line);
   for (const std::string& line : verdict.unmatched) work.print(line);
   if (!verdict.holds())
-    throw Error(
-        ErrorKind::input, options.file,
-        fmt::format("{} errors are worse than expected and {} have no counterpart; if it is "
+    throw CheckFailed(
+        fmt::format("{}: {} errors are worse than expected and {} have no counterpart; if it is "
                     "meant, run `burnish-bench guard update` and say why in the commit",
-                    verdict.worse.size(), verdict.unmatched.size()));
+                    options.file, verdict.worse.size(), verdict.unmatched.size()));
   work.print(fmt::format("{}: {} errors are as expected ({})", options.file, found.size(),
                          expected.origin));
 }

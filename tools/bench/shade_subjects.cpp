@@ -11,6 +11,7 @@
 #include "burnish/precompute/fit_light.h"
 #include "common/interrupt.h"
 #include "harness/parallel_prefilter.h"
+#include "harness/rivals/runtime_rival.h"
 #include "harness/studio_environment.h"
 
 namespace burnish::tools {
@@ -80,18 +81,8 @@ Material ashikhmin_8_800() {
   return material;
 }
 
-ShadingOptions paper_options() {
-  ShadingOptions options;
-  options.visibility = VisibilityModel::hemisphere;
-  options.cosine = CosineModel::constant;
-  options.specular = {SpecularForm::peak, 1, 1};
-  options.environment_taps = 1;
-  options.ladder = false;
-  return options;
-}
-
 std::vector<NamedOptions> all_options() {
-  return {{"paper", paper_options()},
+  return {{"paper", paper_shading_options()},
           {"fast", shading_options(Quality::fast)},
           {"balanced", shading_options(Quality::balanced)},
           {"accurate", shading_options(Quality::accurate)}};

@@ -28,10 +28,6 @@ ShadeScene load_shade_scene(const SubjectOptions& options, const std::string& tr
 /// Ashikhmin and Shirley's lobe of exponents 8 and 800 over a grey diffuse part.
 Material ashikhmin_8_800();
 
-/// Quality::fast as the paper has it: one lookup at a lobe's peak, a hemisphere's visibility, the
-/// cosine out of the integral, no ladder, one lookup of the environment (xu2013asg).
-ShadingOptions paper_options();
-
 /// A way to shade.
 struct NamedOptions {
   std::string name;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <memory>
 
+#include "harness/rivals/runtime_rival.h"
 #include "shade_tables.h"
 
 namespace burnish::tools {
@@ -92,7 +93,8 @@ std::vector<BenchRow> table1(const ShadeBench& bench) {
     const LightRig rig = random_rig(scene.environment_lobes, scene.local_lights, random);
     // The paper's highlights are of the lights; ours, of the map.
     for (const bool ours : {false, true}) {
-      const ShadingOptions options = ours ? shading_options(Quality::balanced) : paper_options();
+      const ShadingOptions options =
+          ours ? shading_options(Quality::balanced) : paper_shading_options();
       MovingFrame frame = scene_frame(bench.scene, {scene.name, options}, ours);
       frame.name = scene.name;
       frame.transfer = &own.transfer;

@@ -222,11 +222,12 @@ HWY_NOINLINE void add_table_irradiance(D d, const PreparedTransfer& transfer,
     sum_lanes(d, total, products);
     for (int c = 0; c < 3; ++c) sums[c] += products[c];
   }
+  const bool is_positive = lights.tables[0].is_positive;
   for (size_t i = 0; i < block.count; ++i)
     for (size_t c = 0; c < 3; ++c) {
       const T full = sum[i][IrradianceTable::kUnshadowed + c];
-      // Rings of the harmonics; signed lights may send less than nothing.
-      irradiance[c][i] += std::min(std::max(sum[i][c], std::min(full, T(0))), std::max(full, T(0)));
+      // Rings of the harmonics. Of lights of both signs a part may be more than all.
+      irradiance[c][i] += is_positive ? std::min(std::max(sum[i][c], T(0)), full) : sum[i][c];
     }
 }
 

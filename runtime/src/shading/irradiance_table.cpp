@@ -286,6 +286,7 @@ void begin_irradiance_tables(const PreparedTransfer& transfer, PreparedLights& l
   weigh_light(light, lights.scratch);
   for (size_t i = 0; i < lights.tables.size(); ++i) {
     const int bands = transfer.ladders[i].harmonics.bands;
+    lights.tables[i].is_positive = is_positive;
     if (i > 0 && bands == transfer.ladders[0].harmonics.bands)
       lights.tables[i].means = lights.tables[0].means;
     else

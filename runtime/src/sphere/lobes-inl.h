@@ -167,8 +167,8 @@ struct AnisotropicGaussian {
   V bandwidth_x, bandwidth_y;
 };
 
-/// Products of lobes this far apart are 0: e to its power is below 1e-17 of one of lobes in line.
-inline constexpr float kFarExponent = 40;
+/// Products of lobes further apart than e^-75, 3e-33 of those in line, are 0.
+inline constexpr float kFarExponent = 75;
 
 /// inner_product_closed_form, see burnish/sphere/asg_product.h.
 template <class D, class V>

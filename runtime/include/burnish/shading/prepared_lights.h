@@ -35,6 +35,7 @@ struct IrradianceTable {
   enum { kMean = 0, kUnshadowed = 4, kMeans = 8 };
 
   int terms = 0;
+  bool is_positive = true;     ///< of no light of negative colour
   std::vector<float> means;    ///< [kCorners^2][kMeans]
   std::vector<float> entries;  ///< through the eigenvectors: [kCorners^2][3][padded_terms(terms)]
   size_t entry_size() const { return 3 * padded_terms(terms); }
