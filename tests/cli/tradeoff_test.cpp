@@ -1,7 +1,9 @@
 // The trade-off sweep and the report, as programs, on a small mesh.
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -36,6 +38,17 @@ class TradeoffProgram : public testing::Test {
                                                          test::quick_bake_options()),
                                             more));
   }
+  /// Of a station on the same mesh.
+  test::RunResult measure(const std::string& station, const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments = test::joined(
+        {station, folder_.file("box.obj"), "--env", folder_.file("env.exr"), "--vertices", "20",
+         "--views", "1", "--noise", ".1", "--bases", "1", "--json", folder_.file("rows.json")},
+        test::quick_bake_options());
+    return test::burnish_bench(test::joined(arguments, more));
+  }
+  json measured_rows() const {
+    return json::parse(test::read_whole_file(folder_.file("rows.json")))["rows"];
+  }
   json rows() const {
     return json::parse(test::read_whole_file(folder_.file("out/tradeoff.json")))["rows"];
   }
@@ -69,6 +82,43 @@ TEST_F(TradeoffProgram, SweepsResumesAndReports) {
   const std::string html = test::read_whole_file(folder_.file("r.html"));
   EXPECT_NE(html.find("data:image/png;base64,iVBOR"), std::string::npos);
   EXPECT_NE(html.find("unshadowed"), std::string::npos);
+}
+
+TEST_F(TradeoffProgram, PresetsChoosesAmongWhatItMeasured) {
+  const test::RunResult result = measure("presets", {"--frames", "1"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  std::map<std::string, json> chosen;
+  std::vector<json> all;
+  for (const json& row : measured_rows()) {
+    if (row["what"] == "all")
+      all.push_back(row);
+    else if (row["what"] != "front")
+      chosen[row["what"]] = row;
+  }
+  EXPECT_EQ(all.size(), 50u);
+  ASSERT_EQ(chosen.size(), 3u);
+  // A larger budget buys no larger an error, but for the tolerance of 3 %.
+  const auto error = [&](const char* name) { return chosen[name]["error"].get<double>(); };
+  EXPECT_LE(error("balanced"), 1.03 * error("fast"));
+  EXPECT_LE(error("accurate"), 1.03 * error("balanced"));
+  for (const auto& [name, row] : chosen)
+    EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const json& other) {
+      return other["settings"] == row["settings"] && other["error"] == row["error"];
+    })) << name;
+}
+
+TEST_F(TradeoffProgram, PromiseTellsWhatHeldAndWhatWasRefused) {
+  const test::RunResult result = measure("promise", {"--errors", ".6,.0001", "--ms", "10000"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const json rows = measured_rows();
+  ASSERT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows[0]["verdict"], "kept");
+  EXPECT_GT(rows[0]["whole_error"].get<double>(), 0);
+  EXPECT_LE(rows[0]["whole_error"].get<double>(), 0.6);
+  EXPECT_EQ(rows[1]["verdict"], "refused");
+  EXPECT_GT(rows[1]["expected_error"].get<double>(), 0.0001);
+  EXPECT_EQ(rows[2]["verdict"], "kept");
+  EXPECT_GT(rows[2]["whole_ms"].get<double>(), 0);
 }
 
 TEST_F(TradeoffProgram, RefusesAFolderOfAnotherSweep) {

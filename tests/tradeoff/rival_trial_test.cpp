@@ -66,6 +66,21 @@ TEST(WithTerms, KeepsTheFirstTermsOfEachVertexAndTexel) {
   EXPECT_EQ(with_terms(transfer, 9).coefficients, transfer.coefficients);
 }
 
+TEST(WithoutLadder, KeepsOnlyTheSsdf) {
+  Transfer transfer;
+  transfer.positions.resize(2);
+  transfer.coefficients = {1, 2};
+  transfer.ladder_coefficients = {3, 4};
+  transfer.ladder_bases.resize(1);
+  transfer.ladder_bases[0].terms = 1;
+  transfer.ladder_crossover = 20;
+  const Transfer cut = without_ladder(transfer);
+  EXPECT_EQ(cut.coefficients, transfer.coefficients);
+  EXPECT_TRUE(cut.ladder_coefficients.empty());
+  EXPECT_EQ(cut.ladder_terms(), 0);
+  EXPECT_EQ(cut.ladder_crossover, 0);
+}
+
 TEST(TrialOfABall, TellsWhatSettingsCostAndErr) {
   Trial trial(small_scene(), small_options());
   const TrialOutcome most = trial.run(small_settings());

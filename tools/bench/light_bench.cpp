@@ -21,6 +21,8 @@
 namespace burnish::tools {
 namespace {
 
+constexpr int kManyLookups = 32;  // as many as lobes of a ratio of 16 can use
+
 struct Options {
   std::vector<std::string> maps;
   std::vector<int> lobes = {5, 10, 14, 20};
@@ -155,7 +157,7 @@ void measure_filter(const std::string& map, const Image& image,
         row["worst"] = worst;
         row["relative_rms"] = std::sqrt(squares / own_squares);
       };
-      add(shading_options(Quality::accurate).environment_taps, "");
+      add(kManyLookups, "");
       if (anisotropy > 1)
         for (const int taps : options.taps) add(taps, fmt::format("_{}_taps", taps));
       rows.push_back(row);

@@ -82,7 +82,7 @@ Material ashikhmin_8_800() {
 }
 
 std::vector<NamedOptions> all_options() {
-  return {{"paper", paper_shading_options()},
+  return {{"paper", paper_shading_options(VisibilityModel::hemisphere, 1)},
           {"fast", shading_options(Quality::fast)},
           {"balanced", shading_options(Quality::balanced)},
           {"accurate", shading_options(Quality::accurate)}};

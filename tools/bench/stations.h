@@ -9,6 +9,8 @@ std::function<void()> declare_bake_bench(CLI::App& app);
 std::function<void()> declare_guard_bench(CLI::App& app);
 std::function<void()> declare_light_bench(CLI::App& app);
 std::function<void()> declare_material_bench(CLI::App& app);
+std::function<void()> declare_presets_bench(CLI::App& app);
+std::function<void()> declare_promise_bench(CLI::App& app);
 std::function<void()> declare_report_bench(CLI::App& app);
 std::function<void()> declare_reproduce_bench(CLI::App& app);
 std::function<void()> declare_rivals_bench(CLI::App& app);

@@ -30,19 +30,13 @@ struct Options {
 };
 
 TrialScene load_scene(const Options& options, Work& work) {
-  TrialScene scene;
-  scene.scene = load_subject(options.mesh);
-  if (options.material_option->count() > 0 || scene.scene.material_id.empty()) {
-    scene.scene.materials = {load_material(options.material).material};
-    scene.scene.material_id.clear();
+  ProceduralScene scene = load_subject(options.mesh);
+  if (options.material_option->count() > 0 || scene.material_id.empty()) {
+    scene.materials = {load_material(options.material).material};
+    scene.material_id.clear();
   }
-  scene.environment = options.environment;
-  scene.map = load_environment(options.environment, work);
-  // The views between are for the check.
-  const std::vector<Vector3f> eyes = eyes_around(scene.scene.camera, 2 * options.views);
-  for (size_t i = 0; i < eyes.size(); ++i)
-    (i % 2 == 0 ? scene.eyes : scene.check_eyes).push_back(eyes[i]);
-  return scene;
+  return tuning_scene(std::move(scene), options.environment,
+                      load_environment(options.environment, work), options.views);
 }
 
 nlohmann::ordered_json outcome_json(const TrialOutcome& outcome) {

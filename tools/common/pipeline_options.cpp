@@ -103,6 +103,9 @@ void add_shading_options(CLI::App& app, ShadingOptions& options) {
              "lights wider than this are split into narrower ones, 0 for none");
   add_number(app, "--environment-taps", "N", options.environment_taps, {1, 64},
              "lookups along a highlight's long axis, at most");
+  add_choice(app, "--highlight-lobe", options.highlight_lobe,
+             {{"whole", HighlightLobe::whole}, {"visible-part", HighlightLobe::visible_part}},
+             "what of a highlight's lobe the map is averaged over");
 }
 
 }  // namespace burnish::tools

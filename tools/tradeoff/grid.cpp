@@ -9,6 +9,20 @@
 namespace burnish::tools {
 namespace {
 
+/// How finely highlights are cut and lit, from coarse to fine: more parts of a lobe without the
+/// lookups to light each, or the reverse, buy little.
+struct HighlightCut {
+  int taps, map_taps;
+};
+constexpr HighlightCut kHighlightCuts[] = {{1, 1}, {1, 3}, {1, 7}, {3, 5}, {3, 7},
+                                           {5, 5}, {5, 7}, {7, 7}, {9, 7}, {9, 15}};
+
+void set_cut(Settings& settings, const HighlightCut& cut) {
+  settings.shading.specular.taps = cut.taps;
+  settings.shading.environment_taps = cut.map_taps;
+  if (cut.taps == 1) settings.shading.specular.lobes = 1;
+}
+
 bool any_specular(const std::vector<Material>& materials) {
   return std::any_of(materials.begin(), materials.end(),
                      [](const Material& material) { return material.has_specular(); });
@@ -29,20 +43,20 @@ void add_bake_dials(std::vector<GridPoint>& grid, const GridOptions& options) {
   const Settings& base = options.base;
   add_dial(grid, base, "terms {}", {4, 8, 16, 24, 32, 48},
            [](Settings& s, int n) { s.bake.terms = n; });
-  add_dial(grid, base, "ladder terms {}", {0, 8, 16, 24, 32, 48},
+  add_dial(grid, base, "ladder terms {}", {0, 16, 48},
            [](Settings& s, int n) { s.bake.ladder_terms = n; });
   if (!options.bakes) return;
-  add_dial(grid, base, "bases {}", {1, 2, 4, 16}, [](Settings& s, int n) { s.bake.bases = n; });
+  add_dial(grid, base, "bases {}", {1, 4, 16}, [](Settings& s, int n) { s.bake.bases = n; });
   add_dial(grid, base, "resolution {}", {32, 64},
            [](Settings& s, int n) { s.bake.resolution = n; });
-  add_dial(grid, base, "directions {}", {64, 256},
+  add_dial(grid, base, "directions {}", {128, 256},
            [](Settings& s, int n) { s.bake.directions = n; });
 }
 
 void add_light_dials(std::vector<GridPoint>& grid, const Settings& base) {
   add_dial(grid, base, "lobes {}", {1, 2, 4, 6, 16, 24, 32, 48},
            [](Settings& s, int n) { s.lobes = n; });
-  add_dial(grid, base, "reach {}", {1, 8, 1000},
+  add_dial(grid, base, "reach {}", {1, 2, 1000},
            [](Settings& s, int n) { s.shading.ladder_reach = static_cast<float>(n); });
   add_dial(grid, base, "visibility {}", {"cap", "hemisphere"}, [](Settings& s, const char* name) {
     s.shading.visibility = name[0] == 'c' ? VisibilityModel::cap : VisibilityModel::hemisphere;
@@ -55,14 +69,21 @@ void add_light_dials(std::vector<GridPoint>& grid, const Settings& base) {
 }
 
 void add_specular_dials(std::vector<GridPoint>& grid, const Settings& base) {
+  for (const HighlightCut& cut : kHighlightCuts) {
+    Settings settings = base;
+    set_cut(settings, cut);
+    grid.push_back({fmt::format("taps {}, map taps {}", cut.taps, cut.map_taps), settings});
+  }
   add_dial(grid, base, "taps {}", {1, 3, 7, 9},
            [](Settings& s, int n) { s.shading.specular.taps = n; });
   add_dial(grid, base, "peak, taps {}", {1, 5, 9}, [](Settings& s, int n) {
     s.shading.specular.form = SpecularForm::peak;
     s.shading.specular.taps = n;
   });
-  add_dial(grid, base, "map taps {}", {1, 3, 9, 16},
+  add_dial(grid, base, "map taps {}", {1, 3, 5, 15},
            [](Settings& s, int n) { s.shading.environment_taps = n; });
+  add_dial(grid, base, "highlight lobe {}", {"whole"},
+           [](Settings& s, const char*) { s.shading.highlight_lobe = HighlightLobe::whole; });
   add_dial(grid, base, "highlights from {}", {"lobes"},
            [](Settings& s, const char*) { s.specular_from_map = false; });
 }
@@ -102,10 +123,12 @@ std::vector<GridPoint> tradeoff_grid(const std::vector<Material>& materials,
   add_light_dials(grid, options.base);
   if (any_specular(materials)) add_specular_dials(grid, options.base);
   if (options.papers)
-    for (const auto& [name, model] : {std::pair{"paper", VisibilityModel::hemisphere},
-                                      std::pair{"paper, cap", VisibilityModel::cap}}) {
+    for (const auto& [name, shading] :
+         {std::pair{"paper", paper_shading_options()},
+          {"paper, one lookup", paper_shading_options(VisibilityModel::hemisphere, 1)},
+          {"paper, cap", paper_shading_options(VisibilityModel::cap)}}) {
       Settings settings = options.base;
-      settings.shading = paper_shading_options(model);
+      settings.shading = shading;
       settings.bake.ladder_terms = 0;
       if (options.bakes) settings.bake.bases = 1;
       grid.push_back({name, settings});
@@ -115,15 +138,12 @@ std::vector<GridPoint> tradeoff_grid(const std::vector<Material>& materials,
 
 std::vector<GridPoint> tuning_grid(const std::vector<Material>& materials,
                                    const GridOptions& options) {
-  struct Look {
-    int taps, map_taps;
-  };
-  std::vector<Look> looks = {{1, 1}, {1, 3}, {3, 3}, {3, 5}, {5, 5}, {9, 5}, {9, 9}, {9, 32}};
-  if (!any_specular(materials)) looks.resize(1);
+  // Without highlights all cuts are the same.
+  const size_t cuts = any_specular(materials) ? std::size(kHighlightCuts) : 1;
   const int terms[] = {8, 16, 32, 48}, lobes[] = {4, 10, 24, 48};
   const float reach[] = {8, 1};
   std::vector<GridPoint> grid;
-  for (size_t look = 0; look < looks.size(); ++look)
+  for (size_t cut = 0; cut < cuts; ++cut)
     for (int t = 0; t < 4; ++t)
       for (int l = 0; l < 4; ++l)
         for (int r = 0; r < 2; ++r) {
@@ -131,14 +151,12 @@ std::vector<GridPoint> tuning_grid(const std::vector<Material>& materials,
           settings.bake.terms = terms[t];
           settings.lobes = lobes[l];
           settings.shading.ladder_reach = reach[r];
-          settings.shading.specular.taps = looks[look].taps;
-          settings.shading.environment_taps = looks[look].map_taps;
-          if (looks[look].taps == 1) settings.shading.specular.lobes = 1;
+          set_cut(settings, kHighlightCuts[cut]);
           grid.push_back(
               {fmt::format("terms {}, lobes {}, reach {}, taps {}, map taps {}", terms[t], lobes[l],
-                           reach[r], looks[look].taps, looks[look].map_taps),
+                           reach[r], kHighlightCuts[cut].taps, kHighlightCuts[cut].map_taps),
                settings,
-               {static_cast<int>(look), t, l, r}});
+               {static_cast<int>(cut), t, l, r}});
         }
   return grid;
 }

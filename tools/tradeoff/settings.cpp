@@ -64,6 +64,7 @@ SettingsFile settings_file(const Settings& settings) {
       number("specular-lobes", shading.specular.lobes),
       number("split-bandwidth", shading.split_bandwidth),
       number("environment-taps", shading.environment_taps),
+      {"highlight-lobe", shading.highlight_lobe == HighlightLobe::whole ? "whole" : "visible-part"},
       {"specular-from", settings.specular_from_map ? "map" : "lobes"}};
   return file;
 }

@@ -27,8 +27,10 @@ std::vector<size_t> rows_to_show(const Sweep& sweep, const Trade& time) {
   const auto add = [&](size_t row) {
     if (std::find(rows.begin(), rows.end(), row) == rows.end()) rows.push_back(row);
   };
-  for (size_t i = 0; i < sweep.rows.size(); ++i)
-    if (sweep.rows[i].kind == RowKind::preset || sweep.rows[i].kind == RowKind::paper) add(i);
+  for (size_t i = 0; i < sweep.rows.size(); ++i) {
+    const SweepRow& row = sweep.rows[i];
+    if (row.kind == RowKind::preset || row.kind == RowKind::paper || row.name == "bases 1") add(i);
+  }
   if (!time.front.empty()) {
     add(time.front.front());
     add(time.front.back());

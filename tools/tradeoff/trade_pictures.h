@@ -15,8 +15,8 @@ struct TradePictureOptions {
   TruthGoal truth = {.noise = 0.02, .first_samples = 32, .most_samples = 1024};
 };
 
-/// Settings to be shown: presets, the papers' choices, and the cheapest and the best of the front
-/// against time. Indices of rows, none twice.
+/// Settings to be shown: presets, the papers' choices, ours with one basis as the papers have, and
+/// the cheapest and the best of the front against time. Indices of rows, none twice.
 std::vector<size_t> rows_to_show(const Sweep& sweep, const Trade& time);
 
 /// A row's picture, the truth and their FLIP map side by side, to be written with write_png

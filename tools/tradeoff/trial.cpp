@@ -122,14 +122,23 @@ Transfer with_terms(const Transfer& transfer, int terms) {
   return result;
 }
 
+Transfer without_ladder(Transfer transfer) {
+  transfer.ladder_bases.clear();
+  transfer.ladder_coefficients.clear();
+  transfer.ladder_crossover = 0;
+  return transfer;
+}
+
 /// A bake, and what of it was shaded last.
 struct Trial::Baked {
+  /// Terms, and whether there is a ladder.
+  using Part = std::pair<int, bool>;
   Transfer whole;
   double seconds = 0;
-  int terms = -1;  ///< of the rest
+  Part part = {-1, false};  ///< which is the rest
   Transfer transfer;
   PreparedTransfer prepared;
-  std::map<int, size_t> file_bytes = {};  ///< by terms
+  std::map<Part, size_t> file_bytes = {};
 };
 
 struct Trial::Fitted {
@@ -171,6 +180,8 @@ const Transfer& Trial::transfer() const { return last_->transfer; }
 Trial::Baked& Trial::baked_for(const BakeOptions& bake_options) {
   BakeOptions most = bake_options;
   most.terms = std::max(options_.most_terms, bake_options.terms);
+  const bool ladder = bake_options.ladder_terms > 0;
+  if (!ladder) most.ladder_terms = BakeOptions{}.ladder_terms;
   Settings key;
   key.bake = most;
   std::unique_ptr<Baked>& baked = baked_[settings_json(key)["bake"].dump()];
@@ -180,10 +191,12 @@ Trial::Baked& Trial::baked_for(const BakeOptions& bake_options) {
     baked->whole = bake(scene_.scene.mesh, {}, most, {.progress = progress_});
     baked->seconds = seconds_since(start);
   }
-  if (baked->terms != bake_options.terms) {
+  const Baked::Part part = {bake_options.terms, ladder};
+  if (baked->part != part) {
     baked->transfer = with_terms(baked->whole, bake_options.terms);
+    if (!ladder) baked->transfer = without_ladder(std::move(baked->transfer));
     baked->prepared = prepare_transfer(baked->transfer);
-    baked->terms = bake_options.terms;
+    baked->part = part;
   }
   return *baked;
 }
@@ -276,7 +289,7 @@ TrialOutcome Trial::run_on(const Settings& settings, Views& views) {
   const Subject subject = subject_of(transfer, &baked.prepared);
   TrialOutcome outcome;
   outcome.bake_s = baked.seconds;
-  size_t& bytes = baked.file_bytes[baked.terms];
+  size_t& bytes = baked.file_bytes[baked.part];
   if (bytes == 0) bytes = file_bytes_of(transfer);
   outcome.file_bytes = bytes;
   outcome.bytes_per_vertex = baked.prepared.bytes_per_vertex();

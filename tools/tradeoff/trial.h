@@ -45,7 +45,7 @@ struct TrialOptions {
 };
 
 struct TrialOutcome {
-  double bake_s = 0;            ///< of a bake with as many terms as any trial has
+  double bake_s = 0;            ///< of a bake with as many terms as any trial has, and a ladder
   size_t file_bytes = 0;        ///< 0: it has no file
   size_t bytes_per_vertex = 0;  ///< of a prepared transfer
   size_t bytes_shared = 0;
@@ -124,5 +124,6 @@ class Trial {
 /// The first terms of a transfer's SSDFs: as if it had been baked with so many, but for the
 /// ladder's crossover and, of several bases, for which vertex is in which.
 Transfer with_terms(const Transfer& transfer, int terms);
+Transfer without_ladder(Transfer transfer);
 
 }  // namespace burnish::tools

@@ -76,6 +76,18 @@ std::optional<size_t> nearest_of(const std::vector<TriedPoint>& tried, const Tar
 
 }  // namespace
 
+TrialScene tuning_scene(ProceduralScene scene, const std::string& environment, const Image& map,
+                        int views) {
+  TrialScene result;
+  const std::vector<Vector3f> eyes = eyes_around(scene.camera, 2 * views);
+  for (size_t i = 0; i < eyes.size(); ++i)
+    (i % 2 == 0 ? result.eyes : result.check_eyes).push_back(eyes[i]);
+  result.scene = std::move(scene);
+  result.environment = environment;
+  result.map = map;
+  return result;
+}
+
 double promised_error(const TrialOutcome& outcome) {
   return outcome.error.without_noise + 2 * outcome.error.standard_error;
 }

@@ -10,6 +10,10 @@
 /// The cheapest settings that are accurate enough, or the most accurate ones that are fast enough.
 namespace burnish::tools {
 
+/// A scene to tune on: `views` eyes around its camera, and as many between them for the check.
+TrialScene tuning_scene(ProceduralScene scene, const std::string& environment, const Image& map,
+                        int views);
+
 /// One of both is above 0.
 struct TuneTarget {
   double error = 0;  ///< relative L2, at most

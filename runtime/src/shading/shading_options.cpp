@@ -7,15 +7,12 @@ ShadingOptions shading_options(Quality quality) {
   switch (quality) {
     case Quality::fast:
       options.specular = {SpecularForm::moments, 1, 1};
-      options.environment_taps = 3;
-      options.ladder_reach = 8;
       break;
     case Quality::balanced:
       break;
     case Quality::accurate:
       options.specular = {SpecularForm::moments, kMaxTaps, kTailLobes};
-      options.environment_taps = 32;
-      options.ladder_reach = 1;
+      options.ladder_reach = 2;
       break;
   }
   return options;

@@ -46,7 +46,8 @@ FigureResult make_frame_rate_table(const FigureContext& context) {
                  .light_lobes = paper.light_lobes,
                  .local_lights = paper.local_lights},
                 context.work);
-    MovingFrame frames[] = {frame_of(stage, "paper", paper_shading_options()),
+    const ShadingOptions papers = paper_shading_options(VisibilityModel::hemisphere, 1);
+    MovingFrame frames[] = {frame_of(stage, "papers_settings", papers),
                             frame_of(stage, "fast", shading_options(Quality::fast)),
                             frame_of(stage, "balanced", shading_options(Quality::balanced))};
     const std::vector<FrameTiming> timings = measure_frames(frames, context.bench);

@@ -35,12 +35,13 @@ size_t shared_bytes(const PrefilteredEnvironment& environment) {
   return bytes;
 }
 
-ShadingOptions paper_shading_options(VisibilityModel model) {
+ShadingOptions paper_shading_options(VisibilityModel model, int lookups) {
   ShadingOptions options;
   options.visibility = model;
   options.cosine = CosineModel::constant;
   options.specular = {SpecularForm::peak, 1, 1};
-  options.environment_taps = 1;
+  options.environment_taps = lookups;
+  options.highlight_lobe = HighlightLobe::whole;
   options.ladder = false;
   return options;
 }

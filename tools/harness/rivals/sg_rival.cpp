@@ -38,7 +38,7 @@ PreparedMaterial sg_material(const Material& material, int lobes) {
 }
 
 ShadingOptions sg_shading_options(const SgOptions& options) {
-  ShadingOptions shading = paper_shading_options(VisibilityModel::hemisphere);
+  ShadingOptions shading = paper_shading_options(VisibilityModel::hemisphere, 1);
   shading.cosine = options.cosine;
   return shading;
 }

@@ -12,6 +12,12 @@ enum class CosineModel {
   horizon_normalised,  ///< unshadowed cosine integral times visible fraction over horizon fraction
 };
 
+/// What of a highlight's lobe the environment is averaged over.
+enum class HighlightLobe {
+  whole,         ///< all of it, as if light and visibility had nothing to do with each other
+  visible_part,  ///< the mean and covariance of what lies past the nearest boundary
+};
+
 /// Speed for accuracy: what each costs and buys is measured in docs/runtime.md. The defaults are
 /// Quality::balanced; VisibilityModel::hemisphere, CosineModel::constant, no ladder and one tap of
 /// SpecularForm::peak are the paper's method.
@@ -25,26 +31,29 @@ struct ShadingOptions {
   int terms = 0;
   SpecularOptions specular = {};  ///< how materials are prepared: see prepare_material
   /// Lookups of the environment along the long axis of a specular lobe, at most, 1..64: each costs
-  /// 15 ns. Odd counts are best.
-  int environment_taps = 5;
+  /// 15 ns up to 8, and 60 ns above. Odd counts are best.
+  int environment_taps = 7;
+  /// `visible_part` costs 5 ns a lobe. Only highlights of the map have it, not those of the lights'
+  /// lobes.
+  HighlightLobe highlight_lobe = HighlightLobe::visible_part;
   /// The horizon-normalised diffuse term of lobes wider than the transfer's crossover sees through
   /// the visibility ladder, where one was baked. False: through the SSDF, as the papers do.
   bool ladder = true;
   /// The environment's lobes up to this many times as sharp as the crossover come through the
   /// ladder, too, 1..1000. They cost nothing there, but 20 ns each where they come through the
   /// SSDF; what they err by more is measured in docs/runtime.md, "Sharp lobes through the ladder".
-  float ladder_reach = 2;
+  float ladder_reach = 8;
   /// prepare_lights splits an environment's lobes wider than this into narrower ones
   /// (lobe_split.h), each with a boundary of its own; 0: none. Costs as many times the lobes; buys
   /// accuracy where there is no ladder (docs/lights.md, "Lobe width").
   float split_bandwidth = 0;
 };
 
-/// Points on the trade of speed for accuracy (docs/runtime.md).
+/// Points on the trade of speed for accuracy, chosen by `burnish-bench presets` (docs/tuning.md).
 enum class Quality {
-  fast,      ///< highlights of one lobe each, which sees the environment three times
+  fast,      ///< highlights of one lobe each
   balanced,  ///< the defaults
-  accurate,  ///< lobes cut into nine, as many lookups as they are long
+  accurate,  ///< lobes cut into nine; more lookups cost several times as much and buy a twentieth
 };
 
 ShadingOptions shading_options(Quality quality);
