@@ -309,7 +309,7 @@ TEST_F(Pipeline, QualityIsOverriddenByDialsInAnyOrder) {
   EXPECT_GT(relative_difference(fast, plain), 2e-3);  // well above the rounding of halves, 5e-4
   EXPECT_GT(relative_difference(with("accurate", {"--quality", "accurate"}), plain), 0);
   EXPECT_EQ(relative_difference(with("set", {"--specular-form", "moments", "--specular-taps", "1",
-                                             "--specular-lobes", "1", "--environment-taps", "3"}),
+                                             "--specular-lobes", "1", "--ladder-reach", "8"}),
                                 fast),
             0);
   const Image before = with("before", {"--visibility", "cap", "--quality", "fast", "--terms", "2"});

@@ -75,6 +75,7 @@ Settings unusual_settings() {
   shading.specular = {SpecularForm::peak, 2, 1};
   shading.split_bandwidth = 0.1f;
   shading.environment_taps = 8;
+  shading.highlight_lobe = HighlightLobe::whole;
   settings.specular_from_map = false;
   return settings;
 }

@@ -42,8 +42,8 @@ class TradeoffProgram : public testing::Test {
   test::RunResult measure(const std::string& station, const std::vector<std::string>& more) const {
     std::vector<std::string> arguments = test::joined(
         {station, folder_.file("box.obj"), "--env", folder_.file("env.exr"), "--vertices", "20",
-         "--views", "1", "--noise", ".1", "--bases", "1", "--json", folder_.file("rows.json")},
-        test::quick_bake_options());
+         "--views", "1", "--noise", ".1", "--json", folder_.file("rows.json")},
+        {"--directions", "64", "--resolution", "32", "--bases", "1"});
     return test::burnish_bench(test::joined(arguments, more));
   }
   json measured_rows() const {

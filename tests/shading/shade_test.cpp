@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "burnish/light/environment_map.h"
 #include "burnish/sphere/octahedral_map.h"
 #include "shading/small_transfer.h"
 #include "support/quadrature.h"
@@ -248,6 +249,45 @@ TEST(ShadeSpecular, WallHidesHalfOfALobeAtItsBoundary) {
   // A 64^2 texel is .055 rad, the lobe .14 wide across the edge: half a texel of offset is .15 of a
   // deviation.
   EXPECT_NEAR(b.x() / a.x(), 0.5, 0.08);
+}
+
+/// Light that grows towards the visible side of a wall: a highlight at the wall's edge sees more
+/// than half of it, which the whole lobe's mean times half does not tell.
+TEST(ShadeSpecular, BesideAWallIsLitByTheVisiblePartOfTheLobe) {
+  const SsdfBasis basis = basis_of([](const Vector3f& v) { return v.z() > 0 && v.x() > 0; }, 64);
+  const PreparedTransfer walled = test::prepare_exactly(test::vertex_that_sees(basis));
+  const auto map_of = [](bool is_walled) {
+    Image map(256, 128);
+    for (int y = 0; y < map.height; ++y)
+      for (int x = 0; x < map.width; ++x) {
+        const Vector3d v = direction_from_latlong((x + 0.5) / map.width, (y + 0.5) / map.height);
+        if (!is_walled || v.x() > 0) map.at(x, y) = Rgb::Constant(static_cast<float>(1.2 + v.x()));
+      }
+    return prefilter_environment(map);
+  };
+  const PrefilteredEnvironment light = map_of(false), light_past_the_wall = map_of(true);
+  const PreparedLights none;
+  for (const auto& [alpha_x, alpha_y] : {std::pair(0.3f, 0.3f), std::pair(0.3f, 0.05f)}) {
+    const PreparedMaterial material =
+        prepare_material(metal(SpecularModel::ward, alpha_x, alpha_y), {.taps = 1});
+    const auto shade = [&](const PreparedTransfer& transfer, const PrefilteredEnvironment& map,
+                           HighlightLobe lobe) {
+      ShadingOptions options;
+      options.environment_taps = 15;
+      options.highlight_lobe = lobe;
+      return shade_point(transfer, upward_point(), Vector3f(-0.1f, 0, 1).normalized(), material,
+                         {&none, &map}, options)
+          .x();
+    };
+    const float truth = shade(kOpen, light_past_the_wall, HighlightLobe::whole);
+    const float part = shade(walled, light, HighlightLobe::visible_part);
+    const float whole = shade(walled, light, HighlightLobe::whole);
+    SCOPED_TRACE(testing::Message()
+                 << alpha_x << " " << alpha_y << ": " << truth << " " << part << " " << whole);
+    // The filtered map blurs the wall's edge by up to 4 %.
+    EXPECT_NEAR(part / truth, 1, 0.05);
+    EXPECT_LT(std::abs(part - truth), 0.5 * std::abs(whole - truth));
+  }
 }
 
 Transfer small_transfer(std::mt19937& random, int vertices, int terms) {

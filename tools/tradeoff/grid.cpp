@@ -14,8 +14,10 @@ namespace {
 struct HighlightCut {
   int taps, map_taps;
 };
-constexpr HighlightCut kHighlightCuts[] = {{1, 1}, {1, 3}, {1, 7}, {3, 5}, {3, 7},
-                                           {5, 5}, {5, 7}, {7, 7}, {9, 7}, {9, 15}};
+/// None is coarser in either than those before it, as tuning's grid needs.
+constexpr HighlightCut kHighlightCuts[] = {{1, 1}, {1, 3}, {1, 7}, {3, 7},
+                                           {5, 7}, {7, 7}, {9, 7}, {9, 15}};
+constexpr HighlightCut kMoreCuts[] = {{3, 5}, {5, 5}, {9, 5}};
 
 void set_cut(Settings& settings, const HighlightCut& cut) {
   settings.shading.specular.taps = cut.taps;
@@ -69,11 +71,13 @@ void add_light_dials(std::vector<GridPoint>& grid, const Settings& base) {
 }
 
 void add_specular_dials(std::vector<GridPoint>& grid, const Settings& base) {
-  for (const HighlightCut& cut : kHighlightCuts) {
+  const auto add_cut = [&](const HighlightCut& cut) {
     Settings settings = base;
     set_cut(settings, cut);
     grid.push_back({fmt::format("taps {}, map taps {}", cut.taps, cut.map_taps), settings});
-  }
+  };
+  std::for_each(std::begin(kHighlightCuts), std::end(kHighlightCuts), add_cut);
+  std::for_each(std::begin(kMoreCuts), std::end(kMoreCuts), add_cut);
   add_dial(grid, base, "taps {}", {1, 3, 7, 9},
            [](Settings& s, int n) { s.shading.specular.taps = n; });
   add_dial(grid, base, "peak, taps {}", {1, 5, 9}, [](Settings& s, int n) {

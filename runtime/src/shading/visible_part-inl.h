@@ -94,11 +94,15 @@ HWY_INLINE AnisotropicGaussian<V> visible_part(D d, const AnisotropicGaussian<V>
   // Axes of the covariance: the larger variance is along (cosine, sine).
   const V mean = hn::Mul(half, hn::Add(xx, yy)), difference = hn::Mul(half, hn::Sub(xx, yy));
   const V radius = root(d, hn::MulAdd(difference, difference, hn::Mul(xy, xy)));
-  const V cosine2 = hn::IfThenElse(hn::Gt(radius, tiny),
-                                   hn::Mul(difference, reciprocal(d, hn::Max(radius, tiny))), one);
-  const V held2 = hn::Max(hn::Min(cosine2, one), hn::Neg(one));
-  const V cosine = root(d, hn::MulAdd(half, held2, half));
-  const V sine = hn::CopySign(root(d, hn::NegMulAdd(half, held2, half)), xy);
+  const V ratio = reciprocal(d, hn::Max(radius, tiny));
+  const V cosine2 =
+      hn::IfThenElse(hn::Gt(radius, tiny), hn::Min(hn::Abs(hn::Mul(difference, ratio)), one), one);
+  // The smaller of the two by the other, so that it does not cancel.
+  const V larger = root(d, hn::MulAdd(half, cosine2, half));
+  const V smaller = hn::Mul(hn::Mul(half, hn::Mul(xy, ratio)), reciprocal(d, larger));
+  const auto is_along_x = hn::Ge(difference, zero);
+  const V cosine = hn::IfThenElse(is_along_x, larger, smaller);
+  const V sine = hn::IfThenElse(is_along_x, smaller, larger);
   // No wider than the lobe was, and not a line.
   const V most = hn::Max(variance_x, variance_y);
   const V least = hn::Mul(hn::Set(d, 0.1f), hn::Min(variance_x, variance_y));
