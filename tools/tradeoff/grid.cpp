@@ -25,11 +25,6 @@ void set_cut(Settings& settings, const HighlightCut& cut) {
   if (cut.taps == 1) settings.shading.specular.lobes = 1;
 }
 
-bool any_specular(const std::vector<Material>& materials) {
-  return std::any_of(materials.begin(), materials.end(),
-                     [](const Material& material) { return material.has_specular(); });
-}
-
 /// A dial, and how to set it.
 template <class Value, class Set>
 void add_dial(std::vector<GridPoint>& grid, const Settings& base, const char* format,
@@ -107,6 +102,11 @@ const char* name_of(Quality quality) {
 }
 
 }  // namespace
+
+bool any_specular(const std::vector<Material>& materials) {
+  return std::any_of(materials.begin(), materials.end(),
+                     [](const Material& material) { return material.has_specular(); });
+}
 
 std::vector<GridPoint> tradeoff_grid(const std::vector<Material>& materials,
                                      const GridOptions& options) {

@@ -9,6 +9,9 @@
 
 namespace burnish::tools {
 
+/// Whether any of them has highlights.
+bool any_specular(const std::vector<Material>& materials);
+
 /// A point of a grid over the dials.
 struct GridPoint {
   std::string name;  ///< the dials that are not as in the middle of the grid, "terms 16, taps 9"

@@ -25,7 +25,7 @@ body{font:15px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--paper)
 h1,h2,h3{line-height:1.2}h2{border-top:1px solid var(--line);padding-top:1em;margin-top:2em}
 .scroll{overflow-x:auto}table{border-collapse:collapse;font-size:13px;font-variant-numeric:tabular-nums}
 th,td{padding:.2em .7em;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
-th:first-child,td:first-child{text-align:left}th{color:var(--soft);font-weight:600}
+th:first-child,td:first-child,.headline td:nth-child(2),.headline th:nth-child(2){text-align:left}th{color:var(--soft);font-weight:600}
 .on{color:var(--mark);font-weight:600}
 figure{margin:1em 0}figcaption,.soft{color:var(--soft);font-size:13px}
 img,svg{max-width:100%;height:auto}pre{white-space:pre-wrap;font-size:13px;border-left:3px solid var(--line);padding-left:1em}
@@ -36,10 +36,10 @@ code{font-size:13px;word-break:break-all}
 <h1>Burnish: what was measured</h1>
 )";
 
-std::string table_html(const ReportTable& table) {
+std::string table_html(const ReportTable& table, size_t most_rows = kMostTableRows) {
   if (table.rows.empty()) return "";
   std::string html = "<div class=\"scroll\"><table>\n";
-  const size_t shown = std::min(table.rows.size(), kMostTableRows + 1);
+  const size_t shown = std::min(table.rows.size(), most_rows + 1);
   for (size_t i = 0; i < shown; ++i) {
     const char* tag = i == 0 ? "th" : "td";
     html += "<tr>";
@@ -90,8 +90,7 @@ std::string headline_html(const Report& report) {
   ReportTable table;
   table.rows.push_back({"scene", "what", "relative L2", "95 %", "99.9 %",
                         report.clock == FrameClock::wall ? "frame, ms" : "frame, CPU ms",
-                        "memory, MB", "file, MB", "bake, s", "on the front: time", "bytes",
-                        "bake"});
+                        "memory, MB", "file, MB", "bake, s", "on the front of"});
   for (const ReportSweep& entry : report.sweeps) {
     const Sweep& sweep = entry.sweep;
     const std::vector<Trade> trades = trades_of(sweep, report.clock);
@@ -107,14 +106,15 @@ std::string headline_html(const Report& report) {
                                         figure_text(row.memory_bytes, 1e-6, 2),
                                         figure_text(row.file_bytes, 1e-6, 2),
                                         figure_text(row.bake_s, 1, 1)};
+      std::string fronts;
       for (const Trade& trade : trades)
-        cells.push_back(trade.points[i].cost <= 0               ? ""
-                        : standing_of(sweep, trade, i).on_front ? "yes"
-                                                                : "no");
+        if (trade.points[i].cost > 0 && standing_of(sweep, trade, i).on_front)
+          fronts += (fronts.empty() ? "" : ", ") + trade.name;
+      cells.push_back(fronts);
       table.rows.push_back(std::move(cells));
     }
   }
-  return table_html(table);
+  return table_html(table, table.rows.size());
 }
 
 std::string front_html(const Sweep& sweep, const Trade& trade) {
@@ -152,7 +152,8 @@ std::string sweep_html(const ReportSweep& entry, FrameClock clock) {
 std::string report_page(const Report& report) {
   std::string html = kHead;
   html += "<p class=\"soft\">This page was made by:</p>\n" + machine_html(report.machine);
-  if (!report.sweeps.empty()) html += "<h2>Headline</h2>\n" + headline_html(report);
+  if (!report.sweeps.empty())
+    html += "<h2>Headline</h2>\n<div class=\"headline\">" + headline_html(report) + "</div>\n";
   for (const ReportSweep& sweep : report.sweeps) html += sweep_html(sweep, report.clock);
   if (!report.figures.empty() || !report.notes.empty()) html += "<h2>Reproduction</h2>\n";
   if (!report.notes.empty()) html += "<pre>" + xml_escaped(report.notes) + "</pre>\n";

@@ -15,7 +15,7 @@ namespace burnish::tools {
 
 /// To be raised when what a row says, or how it is measured, changes: older rows are then measured
 /// again.
-inline constexpr int kSweepVersion = 1;
+inline constexpr int kSweepVersion = 2;
 
 /// Who made a row.
 enum class RowKind {

@@ -14,6 +14,7 @@
 #include "harness/render.h"
 #include "harness/rivals/rival.h"
 #include "harness/rivals/runtime_rival.h"
+#include "tradeoff/grid.h"
 
 namespace burnish::tools {
 namespace {
@@ -294,6 +295,8 @@ TrialOutcome Trial::run_on(const Settings& settings, Views& views) {
   outcome.file_bytes = bytes;
   outcome.bytes_per_vertex = baked.prepared.bytes_per_vertex();
   outcome.bytes_shared = shared_bytes(baked.prepared);
+  if (settings.specular_from_map && any_specular(scene_.scene.materials))
+    outcome.bytes_shared += shared_bytes(*filtered_);
 
   PreparedLights lights;
   const Lighting lighting = {&lights, settings.specular_from_map ? filtered_.get() : nullptr};
