@@ -22,7 +22,7 @@ struct Options {
   std::string environment = kStudioName;
   std::vector<double> errors = {0.10, 0.05, 0.025};
   std::vector<double> ms = {};
-  int views = 2;
+  int views = kTuningViews;
   Settings base;
   TrialOptions trial;
   double whole_noise = 0.05;

@@ -24,7 +24,7 @@ struct Options {
   CLI::Option* material_option = nullptr;
   TuneTarget target;
   Settings base;
-  int views = 2, vertices = 1000;
+  int views = kTuningViews, vertices = 1000;
   double noise = 0.01;
   CommonOptions common;
 };

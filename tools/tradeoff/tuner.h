@@ -21,8 +21,13 @@ struct TuneTarget {
 };
 
 /// What is left to chance: a promise is made of what is met by so much. Of errors, because vertices
-/// and views are drawn; of times, because machines are noisy.
-inline constexpr double kErrorMargin = 0.1, kTimeMargin = 0.1;
+/// and views are drawn, and the error of a brushed scene differs by view; of times, because
+/// machines are noisy.
+inline constexpr double kErrorMargin = 0.2, kTimeMargin = 0.1;
+
+/// Eyes of a run, and of a check. With half as many, four of 21 promises were broken
+/// (docs/tuning.md).
+inline constexpr int kTuningViews = 4;
 
 struct TriedPoint {
   GridPoint point;

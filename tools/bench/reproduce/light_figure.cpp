@@ -104,8 +104,8 @@ FigureResult make_light_fit_figure(const FigureContext& context) {
   bool better_everywhere = true;
   std::pair<double, std::string> least = {1e9, ""}, most = {0, ""};  // SGs' error over ASGs'
   for (const std::string& map : maps) {
-    // Grace Cathedral is one of the paper's two.
-    const bool is_shown = map == kStudioName || map.find("grace") != std::string::npos;
+    // The maps of others are not ours to publish.
+    const bool is_shown = map == kStudioName;
     const MapFits fits = add_map(map, is_shown, context, result);
     lines.push_back(describe(fits));
     better_everywhere = better_everywhere && fits.asg.relative_l2 <= fits.sg.relative_l2;
