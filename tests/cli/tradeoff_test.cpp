@@ -108,12 +108,13 @@ TEST_F(TradeoffProgram, PresetsChoosesAmongWhatItMeasured) {
 }
 
 TEST_F(TradeoffProgram, PromiseTellsWhatHeldAndWhatWasRefused) {
-  const test::RunResult result = measure("promise", {"--errors", ".6,.0001", "--ms", "10000"});
+  const test::RunResult result =
+      measure("promise", {"--errors", ".6,.0001", "--ms", "10000", "--whole-noise", ".02"});
   ASSERT_EQ(result.exit_code, 0) << result.err;
   const json rows = measured_rows();
   ASSERT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows[0]["verdict"], "kept");
-  EXPECT_GT(rows[0]["whole_error"].get<double>(), 0);
+  EXPECT_GT(rows[0]["whole_standard_error"].get<double>(), 0);
   EXPECT_LE(rows[0]["whole_error"].get<double>(), 0.6);
   EXPECT_EQ(rows[1]["verdict"], "refused");
   EXPECT_GT(rows[1]["expected_error"].get<double>(), 0.0001);
