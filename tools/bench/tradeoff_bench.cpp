@@ -273,9 +273,10 @@ std::function<void()> declare_tradeoff_bench(CLI::App& app) {
              "of the truth, relative L2, at which its sampling stops");
   add_number(app, "--samples", "SPP", options->trial.truth.most_samples,
              {64, 1 << 20, "samples a vertex"}, "at most, of the truth");
-  add_choice(app, "--truth", options->trial.fitted_truth, {{"map", false}, {"lights", true}},
-             "lit by the map, or by the lobes that it is fitted by, which leaves out the fit's error "
-             "(but not that highlights are of the map)");
+  add_choice(
+      app, "--truth", options->trial.fitted_truth, {{"map", false}, {"lights", true}},
+      "lit by the map, or by the lobes that it is fitted by, which leaves out the fit's error "
+      "(but not that highlights are of the map)");
   add_number(app, "--frames", "N", options->trial.frames, {1, 1000},
              "timed for each view; the shortest counts");
   add_choice(app, "--time", options->clock, {{"wall", FrameClock::wall}, {"cpu", FrameClock::cpu}},
