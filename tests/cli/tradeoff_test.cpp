@@ -101,10 +101,12 @@ TEST_F(TradeoffProgram, PresetsChoosesAmongWhatItMeasured) {
   const auto error = [&](const char* name) { return chosen[name]["error"].get<double>(); };
   EXPECT_LE(error("balanced"), 1.03 * error("fast"));
   EXPECT_LE(error("accurate"), 1.03 * error("balanced"));
-  for (const auto& [name, row] : chosen)
+  for (const auto& entry : chosen) {
+    const json& row = entry.second;
     EXPECT_TRUE(std::any_of(all.begin(), all.end(), [&](const json& other) {
       return other["settings"] == row["settings"] && other["error"] == row["error"];
-    })) << name;
+    })) << entry.first;
+  }
 }
 
 TEST_F(TradeoffProgram, PromiseTellsWhatHeldAndWhatWasRefused) {
