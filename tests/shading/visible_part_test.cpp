@@ -124,7 +124,7 @@ TEST(VisiblePart, HasTheMeanAndCovarianceOfWhatLiesPastTheBoundary) {
     const Vector3d mean = truth.mean.normalized();
     EXPECT_LT((part.frame.z - mean).norm(), 0.08 * deviation)
         << lobe.bandwidth_x << " " << lobe.bandwidth_y << " " << sine / deviation;
-    // As wide along its own axes as the truth.
+    // As wide along its own axes as the truth; the same bends count twice in a variance.
     for (const auto& [direction, bandwidth] :
          {std::pair(part.frame.x, part.bandwidth_x), std::pair(part.frame.y, part.bandwidth_y)}) {
       const double expected = direction.dot(truth.covariance * direction);

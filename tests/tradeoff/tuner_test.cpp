@@ -214,7 +214,7 @@ TEST(Tuner, KeepsItsPromiseOnAWholeScene) {
   const TuneResult best = tune(grid, {0, std::numeric_limits<double>::max()}, {run, check});
   ASSERT_TRUE(best.chosen);
   const double reachable = promised_error(best.tried[*best.chosen].outcome);
-  for (const double factor : {1.5, 2.0}) {  // above 1 / (1 - kErrorMargin)
+  for (const double factor : {1.3, 2.0}) {  // above 1 / (1 - kErrorMargin)
     const double target = factor * reachable;
     const TuneResult result = tune(grid, {target, 0}, {run, check});
     ASSERT_TRUE(result.chosen) << target;

@@ -19,8 +19,7 @@ namespace burnish::tools {
 namespace {
 
 struct Options {
-  std::vector<std::string> scenes = {"dish",   "teapot", "cylinder", "dish-balls",
-                                     "dragon", "pillow", "cloth"};
+  std::vector<std::string> scenes = paper_scene_names();
   std::string environment = kStudioName;
   int views = 2;
   BakeOptions bake;
@@ -67,6 +66,7 @@ void run(const Options& options) {
   const std::vector<PresetMean> means = preset_means(candidates);
   std::vector<BenchRow> rows;
   const auto add = [&](const std::string& what, size_t i) {
+    if (i == candidates.size()) return;  // nothing fits the budget
     rows.push_back(row_of(what, candidates[i], means[i], options.scenes));
   };
   add("fast", most_accurate_within(means, kFastBudget));

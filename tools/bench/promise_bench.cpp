@@ -17,8 +17,7 @@ namespace burnish::tools {
 namespace {
 
 struct Options {
-  std::vector<std::string> scenes = {"dish",   "teapot", "cylinder", "dish-balls",
-                                     "dragon", "pillow", "cloth"};
+  std::vector<std::string> scenes = paper_scene_names();
   std::string environment = kStudioName;
   std::vector<double> errors = {0.10, 0.05, 0.025};
   std::vector<double> ms = {};

@@ -104,6 +104,10 @@ void stand(ProceduralScene& scene, std::uint32_t first, float gap) {
   for (Vector3f& p : vertices) p.y() += gap - lowest;
 }
 
+std::vector<std::string> paper_scene_names() {
+  return {"dish", "teapot", "cylinder", "dish-balls", "dragon", "pillow", "cloth"};
+}
+
 std::vector<std::string> scene_names() {
   std::vector<std::string> names;
   for (const auto& [name, make] : kScenes) names.emplace_back(name);

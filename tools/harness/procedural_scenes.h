@@ -37,6 +37,9 @@ struct ProceduralScene {
 /// - cloth: a draped cloth with folds (Fig. 14), 16k
 std::vector<std::string> scene_names();
 
+/// Those that stand in for the scenes of xu2013asg, one of each kind: what settings are chosen by.
+std::vector<std::string> paper_scene_names();
+
 /// Throws Error for a name that scene_names() does not have.
 ProceduralScene make_scene(std::string_view name);
 

@@ -34,6 +34,7 @@ inline constexpr double kFastBudget = 1.3, kBalancedBudget = 4, kAccurateBudget 
 
 /// The most accurate candidate within a budget of cost. Of those within `tolerance` of its error,
 /// as a fraction, the cheapest: differences that no one sees are not paid for.
+/// means.size() where none fits.
 size_t most_accurate_within(const std::vector<PresetMean>& means, double budget,
                             double tolerance = 0.03);
 

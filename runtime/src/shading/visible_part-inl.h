@@ -15,7 +15,7 @@ HWY_BEFORE_NAMESPACE();
 namespace burnish {
 namespace HWY_NAMESPACE {
 
-/// 1 / (2 variance) of a lobe's sine along an axis, which the unit disc cuts off: within a tenth of
+/// 1 / (2 variance) of a lobe's sine along an axis, which the unit disc cuts off: within a fifth of
 /// the truth for every bandwidth, exact for narrow lobes, and easy to invert.
 template <class D, class V>
 HWY_INLINE V width_of_bandwidth(D d, V b) {
@@ -120,8 +120,9 @@ HWY_INLINE AnisotropicGaussian<V> visible_part(D d, const AnisotropicGaussian<V>
   const Vector3<V> long_axis = combine(cosine, lobe.x, sine, lobe.y);
   // Orthogonal to the new axis.
   const Vector3<V> flat = combine(one, long_axis, hn::Neg(dot(long_axis, z)), z);
-  const Vector3<V> x =
-      combine(reciprocal_root(d, hn::Max(dot(flat, flat), hn::Set(d, 1e-6f))), flat, zero, flat);
+  const V to_unit = reciprocal_root(d, hn::Max(dot(flat, flat), hn::Set(d, 1e-6f)));
+  const Vector3<V> x = {hn::Mul(to_unit, flat.x), hn::Mul(to_unit, flat.y),
+                        hn::Mul(to_unit, flat.z)};
   return {x, cross(z, x), z, bandwidth_of_width(d, hn::Mul(half, reciprocal(d, large))),
           bandwidth_of_width(d, hn::Mul(half, reciprocal(d, small)))};
 }

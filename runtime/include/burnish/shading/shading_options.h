@@ -19,8 +19,8 @@ enum class HighlightLobe {
 };
 
 /// Speed for accuracy: what each costs and buys is measured in docs/runtime.md. The defaults are
-/// Quality::balanced; VisibilityModel::hemisphere, CosineModel::constant, no ladder and one tap of
-/// SpecularForm::peak are the paper's method.
+/// Quality::balanced; VisibilityModel::hemisphere, CosineModel::constant, HighlightLobe::whole, no
+/// ladder and one tap of SpecularForm::peak are the paper's method.
 struct ShadingOptions {
   /// `directional` costs what `hemisphere` costs, and errs by half; `cap` is for comparison.
   VisibilityModel visibility = VisibilityModel::directional;
@@ -33,8 +33,9 @@ struct ShadingOptions {
   /// Lookups of the environment along the long axis of a specular lobe, at most, 1..64: each costs
   /// 15 ns up to 8, and 60 ns above. Odd counts are best.
   int environment_taps = 7;
-  /// `visible_part` costs 5 ns a lobe. Only highlights of the map have it, not those of the lights'
-  /// lobes.
+  /// `visible_part` costs 7 to 9 % of a frame, and takes off a fifth to half of the error where
+  /// lobes are cut into several (docs/maths.md, "Visible part"). Only highlights of the map have
+  /// it, not those of the lights' lobes.
   HighlightLobe highlight_lobe = HighlightLobe::visible_part;
   /// The horizon-normalised diffuse term of lobes wider than the transfer's crossover sees through
   /// the visibility ladder, where one was baked. False: through the SSDF, as the papers do.
