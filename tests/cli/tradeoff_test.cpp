@@ -95,7 +95,7 @@ TEST_F(TradeoffProgram, PresetsChoosesAmongWhatItMeasured) {
     else if (row["what"] != "front")
       chosen[row["what"]] = row;
   }
-  EXPECT_EQ(all.size(), 50u);
+  EXPECT_EQ(all.size(), 60u);
   ASSERT_EQ(chosen.size(), 3u);
   // A larger budget buys no larger an error, but for the tolerance of 3 %.
   const auto error = [&](const char* name) { return chosen[name]["error"].get<double>(); };

@@ -165,6 +165,102 @@ TEST_P(PrefilteredBatch, KeepsAConstantToTheBit) {
           << lobe.bandwidth_x << " " << lobe.bandwidth_y << " in " << taps << ", seed " << kSeed;
 }
 
+/// Bright below y = 0, by pixels of a quarter of a degree, and dim above.
+PrefilteredEnvironment bright_below() {
+  Image map(1440, 720, Rgb::Constant(1));
+  for (int y = map.height / 2; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) map.at(x, y) = Rgb::Constant(100);
+  return prefilter_environment(map);
+}
+
+/// Lobes that are long across the horizon of y, a deviation and a half above it, as are Gaussians
+/// that were cut there.
+BlockLobes<float> lobes_at_horizon() {
+  std::mt19937 random(kSeed);
+  std::uniform_real_distribution<float> azimuth(0, 2 * kPi<float>), width(0.03f, 0.12f);
+  std::vector<AnisotropicGaussian<float>> lobes(kBlock);
+  for (auto& lobe : lobes) {
+    const float around = azimuth(random), deviation = width(random), height = 1.5f * deviation;
+    const Vector3f level(std::cos(around), 0, std::sin(around));
+    lobe.frame.z = std::cos(height) * level + std::sin(height) * Vector3f::UnitY();
+    lobe.frame.x = std::cos(height) * Vector3f::UnitY() - std::sin(height) * level;
+    lobe.frame.y = lobe.frame.z.cross(lobe.frame.x);
+    lobe.bandwidth_x = 0.5f / (deviation * deviation);
+    lobe.bandwidth_y = 100 * lobe.bandwidth_x;
+  }
+  return block_of<float>(lobes, 0).lobes;
+}
+
+TEST(PrefilteredBlock, SeesNothingBelowAHorizon) {
+  const PrefilteredEnvironment environment = bright_below();
+  const BlockLobes<float> lobes = lobes_at_horizon();
+  Blocks<float> gaussians{lobes, {}, {}}, parts = gaussians;
+  BlockCuts<float> cuts;
+  for (size_t i = 0; i < kBlock; ++i) {
+    gaussians.active[i] = parts.active[i] = 1;
+    cuts.third[i] = cuts.normal.x[i] = cuts.normal.z[i] = 0;
+    cuts.normal.y[i] = 1;
+  }
+  const hn::ScalableTag<float> d;
+  for (const int taps : {7, 15}) {
+    HWY_NAMESPACE::eval_prefiltered(d, environment, kBlock, lobes, gaussians.active, taps,
+                                    gaussians.result);
+    HWY_NAMESPACE::eval_prefiltered(d, environment, kBlock, lobes, parts.active, taps, parts.result,
+                                    &cuts);
+    for (size_t i = 0; i < kBlock; ++i) {
+      // Of a Gaussian, erfc(1.5 / sqrt(2)) / 2 = .067 is below. A tap is a tenth as wide as the
+      // lobe and wider where they are few: half of it is below where it lies at the horizon.
+      EXPECT_NEAR(gaussians.result[0][i], 1 + 99 * .067, 2) << i << ", seed " << kSeed;
+      EXPECT_LT(parts.result[0][i], 1 + 99 * .02) << i << ", seed " << kSeed;
+      EXPECT_GE(parts.result[0][i], 0.99f);
+    }
+  }
+}
+
+TEST(PrefilteredBlock, LeansByTheThirdMoment) {
+  // Radiance that is odd about the lobe's axis shows the moment: sin(3 a) has slope 3 at 0, which a
+  // Gaussian of mean 0 does not see, and -27/6 times the third moment. Seen on the horizon, where
+  // the azimuth is the angle.
+  Image map(2048, 1024);
+  for (int y = 0; y < map.height; ++y)
+    for (int x = 0; x < map.width; ++x) {
+      const Vector3d v = direction_from_latlong((x + 0.5) / map.width, (y + 0.5) / map.height);
+      map.at(x, y) = Rgb::Constant(static_cast<float>(2 + std::sin(3 * std::atan2(v.x(), v.z()))));
+    }
+  const PrefilteredEnvironment environment = prefilter_environment(map);
+  constexpr float kDeviation = 0.12f;
+  std::vector<AnisotropicGaussian<float>> all(kBlock);
+  for (auto& lobe : all) {
+    lobe.frame = {Vector3f::UnitX(), Vector3f::UnitY(), Vector3f::UnitZ()};
+    lobe.bandwidth_x = 0.5f / (kDeviation * kDeviation);
+    lobe.bandwidth_y = 100 * lobe.bandwidth_x;
+  }
+  auto block = block_of<float>(all, 0);
+  BlockCuts<float> cuts;
+  for (size_t i = 0; i < kBlock; ++i) {
+    // Up to a skewness of 1 to both sides.
+    cuts.third[i] =
+        (2.0f * float(i) / float(kBlock - 1) - 1) * kDeviation * kDeviation * kDeviation;
+    cuts.normal.x[i] = cuts.normal.y[i] = 0;
+    cuts.normal.z[i] = 1;  // far from the horizon
+  }
+  HWY_NAMESPACE::eval_prefiltered(hn::ScalableTag<float>(), environment, kBlock, block.lobes,
+                                  block.active, 15, block.result, &cuts);
+  for (size_t i = 0; i < kBlock; ++i) {
+    // A Gaussian x bent to x + q (x^2 - 1), in deviations, where q is a sixth of the skewness.
+    const double q = double(cuts.third[i]) / std::pow(kDeviation, 3) / 6;
+    double expected = 0, mass = 0;
+    for (double x = -5; x <= 5; x += 0.01) {
+      const double weight = std::exp(-x * x / 2);
+      expected += weight * std::sin(3 * kDeviation * (x + q * (x * x - 1)));
+      mass += weight;
+    }
+    // The taps end where the last fifth of a third moment lies.
+    EXPECT_NEAR(block.result[0][i] - 2, expected / mass, 0.25 * std::abs(expected / mass) + 1e-4)
+        << q << ", seed " << kSeed;
+  }
+}
+
 TEST(PrefilteredBlock, SkipsPointsOfNoWeight) {
   const auto lobes = random_lobes(kBlock);
   auto all = block_of<float>(lobes, 0), some = all;

@@ -16,8 +16,8 @@ struct HighlightCut {
 };
 /// None is coarser in either than those before it, as tuning's grid needs.
 constexpr HighlightCut kHighlightCuts[] = {{1, 1}, {1, 3}, {1, 7}, {3, 7},
-                                           {5, 7}, {7, 7}, {9, 7}, {9, 15}};
-constexpr HighlightCut kMoreCuts[] = {{3, 5}, {5, 5}, {9, 5}};
+                                           {5, 7}, {7, 7}, {9, 9}, {9, 15}};
+constexpr HighlightCut kMoreCuts[] = {{3, 5}, {5, 5}, {9, 5}, {9, 7}};
 
 void set_cut(Settings& settings, const HighlightCut& cut) {
   settings.shading.specular.taps = cut.taps;
@@ -79,7 +79,7 @@ void add_specular_dials(std::vector<GridPoint>& grid, const Settings& base) {
     s.shading.specular.form = SpecularForm::peak;
     s.shading.specular.taps = n;
   });
-  add_dial(grid, base, "map taps {}", {1, 3, 5, 15},
+  add_dial(grid, base, "map taps {}", {1, 3, 5, 9, 15},
            [](Settings& s, int n) { s.shading.environment_taps = n; });
   add_dial(grid, base, "highlight lobe {}", {"whole"},
            [](Settings& s, const char*) { s.shading.highlight_lobe = HighlightLobe::whole; });

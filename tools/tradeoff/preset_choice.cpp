@@ -21,7 +21,7 @@ double geometric_mean(const std::vector<double>& values, const std::vector<doubl
 std::vector<PresetCandidate> preset_candidates() {
   std::vector<PresetCandidate> candidates;
   for (const int taps : {1, 3, 5, 7, 9})
-    for (const int lookups : {1, 3, 5, 7, 15})
+    for (const int lookups : {1, 3, 5, 7, 9, 15})
       for (const int reach : {2, 8}) {
         PresetCandidate candidate;
         candidate.name = fmt::format("taps {}, map taps {}, reach {}", taps, lookups, reach);

@@ -43,6 +43,8 @@ struct TapRow {
   V taps;
   V bandwidth;    ///< of a tap
   V spacing;      ///< rad
+  V variance;     ///< of the taps' angles, rad^2
+  V lean;         ///< 1/rad: see lean_row
   V slope;        ///< a tap's weight falls as exp(-slope sine^2)
   V narrow_root;  ///< root of the lobe's larger bandwidth
 };
@@ -84,7 +86,7 @@ HWY_INLINE TapRow<V> plan_taps(D d, V bandwidth_x, V bandwidth_y, int max_taps) 
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), least = hn::Set(d, 1e-3f);
   const V narrow = hn::Max(hn::Max(bandwidth_x, bandwidth_y), least);
   const V wide = hn::Max(hn::Min(bandwidth_x, bandwidth_y), least);
-  TapRow<V> row = {one, zero, zero, zero, hn::Sqrt(narrow)};
+  TapRow<V> row = {one, zero, zero, zero, zero, zero, hn::Sqrt(narrow)};
   row.bandwidth = row.narrow_root * hn::Sqrt(wide);
   if (max_taps <= 1) return row;
   const V ratio = hn::Min(narrow / wide, hn::Set(d, 1e15f)), root = hn::Sqrt(ratio);
@@ -103,7 +105,8 @@ HWY_INLINE TapRow<V> plan_taps(D d, V bandwidth_x, V bandwidth_y, int max_taps) 
   row.bandwidth =
       hn::IfThenElse(is_single, row.bandwidth, hn::MulAdd(hn::Set(d, 0.55f), edge, round));
   const V reach = tap_reach(d, row.taps, one / lack);
-  const V angle = reach * hn::Sqrt(hn::Set(d, 0.5f) / falloff);
+  row.variance = hn::Set(d, 0.5f) / falloff;
+  const V angle = reach * hn::Sqrt(row.variance);
   const V quarter_turn = hn::Set(d, 1.57079633f);
   row.spacing = hn::Set(d, 2.0f) * hn::Min(angle, quarter_turn) / row.taps;
   // What the taps do not reach, the disc's edge apart, is made up for by higher weights far out.
@@ -112,6 +115,25 @@ HWY_INLINE TapRow<V> plan_taps(D d, V bandwidth_x, V bandwidth_y, int max_taps) 
                              hn::NegMulAdd(falloff, missing, falloff));
   return row;
 }
+
+/// Turns each pair of taps, at angles +-a, by lean (a^2 - variance): the mean stays, and the third
+/// moment becomes `third`, or as much of it as keeps the taps in their order.
+template <class D, class V>
+HWY_INLINE void lean_row(D d, V third, TapRow<V>& row) {
+  const V one = hn::Set(d, 1.0f), tiny = hn::Set(d, 1e-12f);
+  const V wanted = third / hn::Max(hn::Set(d, 6.0f) * row.variance * row.variance, tiny);
+  const V most = one / hn::Max(row.spacing * (row.taps - one), tiny);
+  row.lean = hn::IfThenElseZero(hn::Gt(row.taps, hn::Set(d, 1.5f)),
+                                hn::Max(hn::Min(wanted, most), hn::Neg(most)));
+}
+
+/// Where a row lies in the environment, and how far above a horizon: the sines at its ends.
+template <class V>
+struct RowPlace {
+  Vector3<V> axis, along;
+  bool has_horizon = false;
+  V height_at_axis, height_along;
+};
 
 /// Finds the two levels whose lobes are next to each lane's bandwidth, the narrower made of the
 /// map's own pixels beyond the last level, and the share of each.
@@ -199,20 +221,46 @@ HWY_INLINE Vector3<V> rotated(D d, const Eigen::Matrix3f& m, const Vector3<V>& v
   return {row(0), row(1), row(2)};
 }
 
+/// The share of a tap that is above the horizon. Never 0, so that there is always a mean.
+template <class D, class V>
+HWY_INLINE V share_above(D d, V bandwidth_root, V height) {
+  const V half = hn::Set(d, 0.5f), one = hn::Set(d, 1.0f), far = hn::Set(d, 3.0f);
+  const V deviations = bandwidth_root * height;
+  const auto is_whole = hn::Gt(deviations, far);
+  if (hn::AllTrue(d, is_whole)) return one;
+  const V tail = erf_of_positive(d, hn::Min(hn::Abs(deviations), far));
+  const V share = hn::MulAdd(half, hn::CopySign(tail, deviations), half);
+  return hn::IfThenElse(is_whole, one, hn::Max(share, hn::Set(d, 1e-3f)));
+}
+
 /// Looks up the rows of all lanes, the taps to both sides of the middle at once. Returns the sum of
 /// weights. `steps`: pairs of taps, 0 where nothing is wanted.
 template <class D, class V, class T>
 HWY_INLINE V sum_rows(D d, const PrefilteredEnvironment& environment, const LaneLevels<T>& levels,
-                      const TapRow<V>& row, const Vector3<V>& axis, const Vector3<V>& along,
-                      V steps, LaneSums<T>& sums) {
+                      const TapRow<V>& row, const RowPlace<V>& place, V steps, LaneSums<T>& sums) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   const V three = hn::Set(d, 3.0f);
   const V pairs = half * row.taps;
   // An odd row's first pair is one tap in the middle.
   const V start = hn::IfThenZeroElse(hn::Lt(hn::Floor(pairs), pairs), half);
   const T last = hn::GetLane(hn::MaxOfLanes(d, steps));
+  const V bandwidth_root = hn::Sqrt(row.bandwidth);
   LaneTaps<T> taps;
   V weight_sum = zero;
+  // At cos axis + sin along.
+  const auto look_up = [&](V cosine, V sine, V weight, bool is_first) HWY_ATTR {
+    if (place.has_horizon) {
+      const V height = hn::MulAdd(cosine, place.height_at_axis, sine * place.height_along);
+      weight = weight * share_above(d, bandwidth_root, height);
+    }
+    weight_sum = weight_sum + weight;
+    const Vector3<V>&x = place.along, &z = place.axis;
+    const Vector3<V> direction = {hn::MulAdd(sine, x.x, cosine * z.x),
+                                  hn::MulAdd(sine, x.y, cosine * z.y),
+                                  hn::MulAdd(sine, x.z, cosine * z.z)};
+    place_tap(d, levels, direction, weight, taps);
+    fetch_taps(environment, levels, taps, hn::Lanes(d), is_first, sums);
+  };
   for (T step = 0; step < last; ++step) {
     const V count = hn::Set(d, step), angle = row.spacing * (count + start);
     const V s = sine(d, angle);
@@ -225,19 +273,16 @@ HWY_INLINE V sum_rows(D d, const PrefilteredEnvironment& environment, const Lane
     if (!hn::AllTrue(d, is_whole))
       weight = weight * hn::IfThenElse(is_whole, one, erf_of_positive(d, hn::Min(edge, three)));
     weight = hn::IfThenElseZero(hn::Lt(count, steps), weight);
+    // The turn, by the tangent of its half, for which the half is near enough.
+    const V tangent = half * row.lean * hn::MulSub(angle, angle, row.variance);
+    const V scale = one / hn::MulAdd(tangent, tangent, one);
+    const V turn_s = scale * (tangent + tangent);
+    const V turn_c = scale * hn::NegMulAdd(tangent, tangent, one);
+    const V cc = c * turn_c, cs = c * turn_s, sc = s * turn_c, ss = s * turn_s;
+    look_up(cc - ss, cs + sc, weight, step == 0);
     const V other = hn::IfThenElseZero(hn::Gt(angle, zero), weight);
-    weight_sum = weight_sum + weight + other;
-    const Vector3<V> middle = {c * axis.x, c * axis.y, c * axis.z};
-    const Vector3<V> right = {hn::MulAdd(s, along.x, middle.x), hn::MulAdd(s, along.y, middle.y),
-                              hn::MulAdd(s, along.z, middle.z)};
-    place_tap(d, levels, right, weight, taps);
-    fetch_taps(environment, levels, taps, hn::Lanes(d), step == 0, sums);
     if (hn::AllTrue(d, hn::Eq(other, zero))) continue;
-    const Vector3<V> left = {hn::NegMulAdd(s, along.x, middle.x),
-                             hn::NegMulAdd(s, along.y, middle.y),
-                             hn::NegMulAdd(s, along.z, middle.z)};
-    place_tap(d, levels, left, other, taps);
-    fetch_taps(environment, levels, taps, hn::Lanes(d), false, sums);
+    look_up(cc + ss, cs - sc, other, false);
   }
   return weight_sum;
 }
@@ -245,17 +290,18 @@ HWY_INLINE V sum_rows(D d, const PrefilteredEnvironment& environment, const Lane
 /// Of a vector of points, from `first` on.
 template <class D, class T>
 HWY_INLINE void eval_vector(D d, const PrefilteredEnvironment& environment, size_t first,
-                            const BlockLobes<T>& lobes, hn::Mask<D> is_active, int max_taps,
-                            BlockRgb<T>& result) {
+                            const BlockLobes<T>& lobes, const BlockCuts<T>* cuts,
+                            hn::Mask<D> is_active, int max_taps, BlockRgb<T>& result) {
   using V = hn::VFromD<D>;
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f);
   const auto load = [&](const BlockArray<T>& array)
                         HWY_ATTR { return hn::Load(d, array.data() + first); };
   const V bandwidth_x = load(lobes.bandwidth_x), bandwidth_y = load(lobes.bandwidth_y);
   TapRow<V> row = plan_taps(d, bandwidth_x, bandwidth_y, max_taps);
+  if (cuts) lean_row(d, load(cuts->third), row);
   // A row of few taps blurs along its axis: the map's own pixels, at ten times the cost, would not
   // make it exact across it.
-  constexpr int kFew = 8;
+  constexpr int kFew = 15;
   const V widest = hn::Set(d, static_cast<T>(0.98f * environment.levels.back().bandwidth));
   if (max_taps <= kFew)
     row.bandwidth =
@@ -263,22 +309,29 @@ HWY_INLINE void eval_vector(D d, const PrefilteredEnvironment& environment, size
   LaneLevels<T> levels;
   find_levels(d, environment, row.bandwidth, levels);
   const Vector3<V> z = {load(lobes.z.x), load(lobes.z.y), load(lobes.z.z)};
-  const Vector3<V> axis = rotated(d, environment.environment_from_world, z);
+  RowPlace<V> place;
+  place.axis = rotated(d, environment.environment_from_world, z);
   LaneSums<T> sums;
   V weight_sum = hn::IfThenElseZero(is_active, one);
   const V steps = hn::IfThenElseZero(is_active, hn::Ceil(hn::Set(d, 0.5f) * row.taps));
   if (hn::AllTrue(d, hn::Or(hn::Eq(row.taps, one), hn::Not(is_active)))) {
     LaneTaps<T> taps;
-    place_tap(d, levels, axis, weight_sum, taps);
+    place_tap(d, levels, place.axis, weight_sum, taps);
     fetch_taps(environment, levels, taps, hn::Lanes(d), true, sums);
   } else {
     const Vector3<V> x = {load(lobes.x.x), load(lobes.x.y), load(lobes.x.z)}, y = cross(z, x);
-    const auto x_is_long = hn::Lt(bandwidth_x, bandwidth_y);
+    const auto x_is_long = hn::Le(bandwidth_x, bandwidth_y);
     const Vector3<V> long_axis = {hn::IfThenElse(x_is_long, x.x, y.x),
                                   hn::IfThenElse(x_is_long, x.y, y.y),
                                   hn::IfThenElse(x_is_long, x.z, y.z)};
-    const Vector3<V> along = rotated(d, environment.environment_from_world, long_axis);
-    weight_sum = sum_rows(d, environment, levels, row, axis, along, steps, sums);
+    place.along = rotated(d, environment.environment_from_world, long_axis);
+    if (cuts) {
+      const Vector3<V> normal = {load(cuts->normal.x), load(cuts->normal.y), load(cuts->normal.z)};
+      place.has_horizon = true;
+      place.height_at_axis = dot(normal, z);
+      place.height_along = dot(normal, long_axis);
+    }
+    weight_sum = sum_rows(d, environment, levels, row, place, steps, sums);
   }
   const V inverse = one / hn::Max(weight_sum, hn::Set(d, 1e-30f));
   V reference[4], sum[4];
@@ -294,11 +347,11 @@ HWY_INLINE void eval_vector(D d, const PrefilteredEnvironment& environment, size
 
 /// Mean radiance of the environment under the lobe of each of `count` points (1..kBlock; lanes up
 /// to the next whole vector are valid): eval_prefiltered of each. Points whose weight is 0 in
-/// `active` are skipped (result 0).
+/// `active` are skipped (result 0). `cuts`: null where the lobes are Gaussians.
 template <class D, class T = hn::TFromD<D>>
 void eval_prefiltered(D d, const PrefilteredEnvironment& environment, size_t count,
                       const BlockLobes<T>& lobes, const BlockArray<T>& active, int max_taps,
-                      BlockRgb<T>& result) {
+                      BlockRgb<T>& result, const BlockCuts<T>* cuts = nullptr) {
   for (size_t first = 0; first < count; first += hn::Lanes(d)) {
     const auto is_active = hn::And(hn::Ne(hn::Load(d, active.data() + first), hn::Zero(d)),
                                    hn::FirstN(d, count - first));
@@ -306,7 +359,7 @@ void eval_prefiltered(D d, const PrefilteredEnvironment& environment, size_t cou
       for (auto& channel : result) hn::Store(hn::Zero(d), d, channel.data() + first);
       continue;
     }
-    eval_vector(d, environment, first, lobes, is_active, max_taps, result);
+    eval_vector(d, environment, first, lobes, cuts, is_active, max_taps, result);
   }
 }
 

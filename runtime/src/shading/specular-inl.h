@@ -35,11 +35,12 @@ HWY_INLINE void store(D d, const AnisotropicGaussian<V>& lobe, BlockLobes<T>& lo
   hn::Store(lobe.bandwidth_y, d, lobes.bandwidth_y.data() + i);
 }
 
-/// Whether highlights see the map by the visible parts of their lobes. Where nothing occludes, what
-/// is above the horizon is all that they stand for.
-HWY_INLINE bool sees_by_parts(const PreparedTransfer& transfer, const ShadingOptions& options) {
-  return options.highlight_lobe == HighlightLobe::visible_part && !transfer.bases.empty();
-}
+/// The visible parts of a slice's lobes.
+template <class T>
+struct BlockParts {
+  BlockLobes<T> lobes;
+  BlockCuts<T> cuts;
+};
 
 /// From the points' frames to the world.
 template <class D, class T = hn::TFromD<D>>
@@ -64,16 +65,16 @@ HWY_NOINLINE bool turn_slice(D d, const ShadingBlock<T>& block, SliceBlock<T>& s
   return !hn::AllTrue(d, hn::Le(most, hn::Zero(d)));
 }
 
-/// Takes off the weight of a turned slice's lobes what is hidden of each, and tells in `parts`
-/// what is left of it, where sees_by_parts; footprints are those of start_lookups.
+/// Takes off the weight of a turned slice's lobes what is hidden of each, and tells in `parts`,
+/// where the options want it, what is left of it; footprints are those of start_lookups.
 template <class D, class T = hn::TFromD<D>>
 HWY_NOINLINE void hide_slice(D d, const PreparedTransfer& transfer, SpecularForm form,
                              const ShadingOptions& options, size_t terms, ShadingBlock<T>& block,
                              const BlockFootprints<T>& footprints, SliceBlock<T>& slice,
-                             BlockLobes<T>& parts) {
+                             BlockParts<T>& parts) {
   using V = hn::VFromD<D>;
   const bool occluded = !transfer.bases.empty();
-  const bool by_parts = sees_by_parts(transfer, options);
+  const bool by_parts = options.highlight_lobe == HighlightLobe::visible_part;
   BlockBoundaries<T> boundaries;
   if (occluded) find_boundaries(d, transfer, block, terms, slice.lobes.z, footprints, boundaries);
   for (size_t i = 0; i < block.count; i += hn::Lanes(d)) {
@@ -87,8 +88,13 @@ HWY_NOINLINE void hide_slice(D d, const PreparedTransfer& transfer, SpecularForm
       visible = visible_fraction(d, options.visibility, lobe, boundary);
     else if (occluded)
       visible = visible_share(d, options.visibility, lobe, boundary, normal);
-    if (by_parts)
-      store(d, visible_part(d, lobe, boundary, normal, form == SpecularForm::moments), parts, i);
+    if (by_parts) {
+      const VisiblePart<V> part =
+          visible_part(d, lobe, boundary, normal, form == SpecularForm::moments);
+      store(d, part.lobe, parts.lobes, i);
+      hn::Store(part.third, d, parts.cuts.third.data() + i);
+      store(d, normal, parts.cuts.normal, i);
+    }
     for (size_t c = 0; c < 3; ++c) {
       T* weight = slice.weight[c].data() + i;
       hn::Store(hn::Mul(visible, hn::Load(d, weight)), d, weight);
@@ -119,19 +125,21 @@ HWY_NOINLINE void see_lobes(D d, const PreparedLights& lights, size_t count,
   }
 }
 
-/// The filtered map under the slice's lobes, where they weigh anything: the integral of the
-/// product.
+/// The filtered map under the slice's lobes, or what is visible of them, where they weigh anything:
+/// the integral of the product.
 template <class D, class T = hn::TFromD<D>>
 HWY_NOINLINE void see_map(D d, const PrefilteredEnvironment& environment,
                           const ShadingOptions& options, size_t count, const SliceBlock<T>& slice,
-                          const BlockLobes<T>& lobes, BlockRgb<T>& seen) {
+                          const BlockParts<T>& parts, BlockRgb<T>& seen) {
+  const bool by_parts = options.highlight_lobe == HighlightLobe::visible_part;
   BlockArray<T> active = {};
   for (size_t i = 0; i < count; i += hn::Lanes(d))
     hn::Store(hn::Max(hn::Load(d, slice.weight[0].data() + i),
                       hn::Max(hn::Load(d, slice.weight[1].data() + i),
                               hn::Load(d, slice.weight[2].data() + i))),
               d, active.data() + i);
-  eval_prefiltered(d, environment, count, lobes, active, options.environment_taps, seen);
+  eval_prefiltered(d, environment, count, by_parts ? parts.lobes : slice.lobes, active,
+                   options.environment_taps, seen, by_parts ? &parts.cuts : nullptr);
   for (size_t i = 0; i < count; i += hn::Lanes(d))
     for (BlockArray<T>& channel : seen)
       hn::Store(hn::Mul(hn::Load(d, channel.data() + i), hn::Load(d, slice.integral.data() + i)), d,
@@ -155,11 +163,10 @@ HWY_INLINE void reflect_environment(D d, const PreparedTransfer& transfer, Specu
   BlockRgb<T> seen;
   if (!lighting.environment)
     see_lobes(d, *lighting.lights, block.count, slice.lobes, block.fetcher, seen);
-  BlockLobes<T> parts;
+  BlockParts<T> parts;
   hide_slice(d, transfer, form, options, terms, block, footprints, slice, parts);
   if (lighting.environment)
-    see_map(d, *lighting.environment, options, block.count, slice,
-            sees_by_parts(transfer, options) ? parts : slice.lobes, seen);
+    see_map(d, *lighting.environment, options, block.count, slice, parts, seen);
   for (size_t i = 0; i < block.count; i += hn::Lanes(d))
     for (size_t c = 0; c < 3; ++c) {
       T* sum = reflected[c].data() + i;

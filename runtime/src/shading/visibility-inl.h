@@ -395,6 +395,22 @@ HWY_INLINE V visible_fraction(D d, VisibilityModel model, const AnisotropicGauss
   return fraction_past(d, bandwidth, boundary.sine);
 }
 
+/// How far two boundaries cut the same off a lobe: the square of the correlation of the distances
+/// from them, where that is positive. 1: both lie across the same direction; 0: neither tells of
+/// the other.
+template <class D, class V>
+HWY_INLINE V overlap(D d, const AnisotropicGaussian<V>& lobe, const Vector3<V>& a,
+                     const Vector3<V>& b) {
+  const V one = hn::Set(d, 1.0f), tiny = hn::Set(d, 1e-20f);
+  const V xx = lobe.bandwidth_y, yy = lobe.bandwidth_x;  // variances, but for a factor
+  const V ax = dot(a, lobe.x), ay = dot(a, lobe.y), bx = dot(b, lobe.x), by = dot(b, lobe.y);
+  const auto product = [&](V x, V y) HWY_ATTR { return hn::MulAdd(x, xx, hn::Mul(y, yy)); };
+  const V aa = product(hn::Mul(ax, ax), hn::Mul(ay, ay));
+  const V bb = product(hn::Mul(bx, bx), hn::Mul(by, by));
+  const V ab = hn::Max(product(hn::Mul(ax, bx), hn::Mul(ay, by)), hn::Zero(d));
+  return hn::Min(hn::Mul(hn::Mul(ab, ab), reciprocal(d, hn::Max(hn::Mul(aa, bb), tiny))), one);
+}
+
 /// Of what of a lobe is above a normal's horizon, the part that is visible. Both vanish together
 /// where the lobe is far below the horizon; there what it lights does, too.
 template <class D, class V>
@@ -419,9 +435,11 @@ HWY_INLINE V visible_share(D d, VisibilityModel model, const AnisotropicGaussian
   }
   // Where next to nothing is above the horizon both are rounding, and the share passes to 1.
   const V little = hn::Set(d, 1e-10f), held = hn::Max(above, zero);
-  return hn::Min(hn::Mul(hn::MulAdd(hn::Max(seen, zero), held, little),
-                         reciprocal(d, hn::MulAdd(held, held, little))),
-                 one);
+  seen = hn::Max(seen, zero);
+  const V share = hn::Min(
+      hn::Mul(hn::MulAdd(seen, held, little), reciprocal(d, hn::MulAdd(held, held, little))), one);
+  // What another boundary hides of all of the lobe, it hides of what is above the horizon.
+  return hn::MulAdd(overlap(d, lobe, boundary.gradient, normal), hn::Sub(share, seen), seen);
 }
 
 }  // namespace HWY_NAMESPACE

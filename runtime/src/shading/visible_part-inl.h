@@ -38,6 +38,8 @@ struct PlaneCut {
   V shift_x, shift_y;
   V across_x, across_y;
   V loss;
+  V third;       ///< central moment, of a lobe of deviation 1
+  V deviations;  ///< of the axis from the boundary
 };
 
 /// `x`, `y`: the boundary's gradient in the lobe's frame, of any length; zero: no boundary.
@@ -60,16 +62,32 @@ HWY_INLINE PlaneCut<V> cut_plane(D d, V variance_x, V variance_y, V x, V y, V si
   const V hazard = hn::Mul(density, reciprocal(d, hn::MulAdd(half, tail, half)));
   const V loss = hn::Max(hn::Min(hn::Mul(hazard, hn::Add(hazard, t)), one), zero);
   const V along_x = hn::Mul(qx, inverse), along_y = hn::Mul(qy, inverse);
-  return {hn::Mul(along_x, hazard), hn::Mul(along_y, hazard), along_x, along_y, loss};
+  const V first = hn::Add(hazard, t);
+  const V third = hn::Mul(hazard, hn::MulSub(first, hn::Add(hazard, first), one));
+  return {hn::Mul(along_x, hazard), hn::Mul(along_y, hazard), along_x, along_y, loss, third, t};
 }
+
+/// The skewness of a normal variable that is cut where its mean, after the cut, is so many of its
+/// deviations away: within .05 of the truth.
+template <class D, class V>
+HWY_INLINE V skewness_of_cut(D d, V deviations) {
+  const V two = hn::Set(d, 2.0f), one = hn::Set(d, 1.0f);
+  return hn::Mul(two, exp(d, hn::Mul(two, hn::Sub(one, hn::Max(deviations, one)))));
+}
+
+template <class V>
+struct VisiblePart {
+  AnisotropicGaussian<V> lobe;  ///< bandwidth_x <= bandwidth_y
+  V third;                      ///< central moment along x, rad^3
+};
 
 /// The lobe of the mean and the covariance that a lobe has past `boundary`, where its part above
 /// the horizon is what it stands for already (`is_cut_at_horizon`), as the mean and covariance of
-/// the tangent plane's Gaussian.
+/// the tangent plane's Gaussian; and the third moment of both cuts.
 template <class D, class V>
-HWY_INLINE AnisotropicGaussian<V> visible_part(D d, const AnisotropicGaussian<V>& lobe,
-                                               const Boundary<V>& boundary,
-                                               const Vector3<V>& normal, bool is_cut_at_horizon) {
+HWY_INLINE VisiblePart<V> visible_part(D d, const AnisotropicGaussian<V>& lobe,
+                                       const Boundary<V>& boundary, const Vector3<V>& normal,
+                                       bool is_cut_at_horizon) {
   const V zero = hn::Zero(d), one = hn::Set(d, 1.0f), half = hn::Set(d, 0.5f);
   const V tiny = hn::Set(d, 1e-20f);
   const V width_x = width_of_bandwidth(d, lobe.bandwidth_x),
@@ -82,14 +100,20 @@ HWY_INLINE AnisotropicGaussian<V> visible_part(D d, const AnisotropicGaussian<V>
   V xx = hn::NegMulAdd(cut.loss, hn::Mul(cut.across_x, cut.across_x), variance_x);
   V yy = hn::NegMulAdd(cut.loss, hn::Mul(cut.across_y, cut.across_y), variance_y);
   V xy = hn::Neg(hn::Mul(cut.loss, hn::Mul(cut.across_x, cut.across_y)));
+  V third = cut.third, own_third = zero, own_x = zero, own_y = zero;
   if (is_cut_at_horizon) {
     const PlaneCut<V> own = cut_plane(d, variance_x, variance_y, dot(normal, lobe.x),
                                       dot(normal, lobe.y), dot(normal, lobe.z));
-    shift_x = hn::Sub(shift_x, own.shift_x);
-    shift_y = hn::Sub(shift_y, own.shift_y);
-    xx = hn::MulAdd(own.loss, hn::Mul(own.across_x, own.across_x), xx);
-    yy = hn::MulAdd(own.loss, hn::Mul(own.across_y, own.across_y), yy);
-    xy = hn::MulAdd(own.loss, hn::Mul(own.across_x, own.across_y), xy);
+    // What of the cut is the horizon's has been made already.
+    const V same = overlap(d, lobe, boundary.gradient, normal), loss = hn::Mul(same, own.loss);
+    shift_x = hn::NegMulAdd(same, own.shift_x, shift_x);
+    shift_y = hn::NegMulAdd(same, own.shift_y, shift_y);
+    xx = hn::MulAdd(loss, hn::Mul(own.across_x, own.across_x), xx);
+    yy = hn::MulAdd(loss, hn::Mul(own.across_y, own.across_y), yy);
+    xy = hn::MulAdd(loss, hn::Mul(own.across_x, own.across_y), xy);
+    own_third = hn::NegMulAdd(same, own.third, skewness_of_cut(d, own.deviations));
+    own_x = own.across_x;
+    own_y = own.across_y;
   }
   // Axes of the covariance: the larger variance is along (cosine, sine).
   const V mean = hn::Mul(half, hn::Add(xx, yy)), difference = hn::Mul(half, hn::Sub(xx, yy));
@@ -103,6 +127,11 @@ HWY_INLINE AnisotropicGaussian<V> visible_part(D d, const AnisotropicGaussian<V>
   const auto is_along_x = hn::Ge(difference, zero);
   const V cosine = hn::IfThenElse(is_along_x, larger, smaller);
   const V sine = hn::IfThenElse(is_along_x, smaller, larger);
+  const auto cube = [](V v) HWY_ATTR { return hn::Mul(v, hn::Mul(v, v)); };
+  third = hn::Mul(third, cube(hn::MulAdd(cosine, cut.across_x, hn::Mul(sine, cut.across_y))));
+  third = hn::MulAdd(own_third, cube(hn::MulAdd(cosine, own_x, hn::Mul(sine, own_y))), third);
+  // SSDFs tell of boundaries to a texel, and materials fade toward the horizon: half errs least.
+  third = hn::Mul(half, third);
   // No wider than the lobe was, and not a line.
   const V most = hn::Max(variance_x, variance_y);
   const V least = hn::Mul(hn::Set(d, 0.1f), hn::Min(variance_x, variance_y));
@@ -123,8 +152,9 @@ HWY_INLINE AnisotropicGaussian<V> visible_part(D d, const AnisotropicGaussian<V>
   const V to_unit = reciprocal_root(d, hn::Max(dot(flat, flat), hn::Set(d, 1e-6f)));
   const Vector3<V> x = {hn::Mul(to_unit, flat.x), hn::Mul(to_unit, flat.y),
                         hn::Mul(to_unit, flat.z)};
-  return {x, cross(z, x), z, bandwidth_of_width(d, hn::Mul(half, reciprocal(d, large))),
-          bandwidth_of_width(d, hn::Mul(half, reciprocal(d, small)))};
+  return {{x, cross(z, x), z, bandwidth_of_width(d, hn::Mul(half, reciprocal(d, large))),
+           bandwidth_of_width(d, hn::Mul(half, reciprocal(d, small)))},
+          third};
 }
 
 }  // namespace HWY_NAMESPACE

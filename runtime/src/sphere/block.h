@@ -39,4 +39,11 @@ struct BlockLobes {
   BlockArray<T> bandwidth_x, bandwidth_y;
 };
 
+/// What sets lobes that stand for a part of others apart from Gaussians.
+template <class T>
+struct BlockCuts {
+  BlockArray<T> third;     ///< central moment along the longer axis, x if both are as long, rad^3
+  BlockVector3<T> normal;  ///< of the horizon below which there is nothing of them
+};
+
 }  // namespace burnish

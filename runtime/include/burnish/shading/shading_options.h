@@ -15,7 +15,7 @@ enum class CosineModel {
 /// What of a highlight's lobe the environment is averaged over.
 enum class HighlightLobe {
   whole,         ///< all of it, as if light and visibility had nothing to do with each other
-  visible_part,  ///< the mean and covariance of what lies past the nearest boundary
+  visible_part,  ///< the moments of what lies past the nearest boundary, and above the horizon
 };
 
 /// Speed for accuracy: what each costs and buys is measured in docs/runtime.md. The defaults are
@@ -31,7 +31,7 @@ struct ShadingOptions {
   int terms = 0;
   SpecularOptions specular = {};  ///< how materials are prepared: see prepare_material
   /// Lookups of the environment along the long axis of a specular lobe, at most, 1..64: each costs
-  /// 15 ns up to 8, and 60 ns above. Odd counts are best.
+  /// 15 ns up to 15, and 60 ns above. Odd counts are best.
   int environment_taps = 7;
   /// `visible_part` costs 7 to 9 % of a frame, and takes off a fifth to half of the error where
   /// lobes are cut into several (docs/maths.md, "Visible part"). Only highlights of the map have
@@ -54,7 +54,7 @@ struct ShadingOptions {
 enum class Quality {
   fast,      ///< highlights of one lobe each
   balanced,  ///< the defaults
-  accurate,  ///< lobes cut into nine; more lookups cost several times as much and buy a twentieth
+  accurate,  ///< lobes cut into nine, and more lookups
 };
 
 ShadingOptions shading_options(Quality quality);
