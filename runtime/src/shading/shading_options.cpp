@@ -12,7 +12,7 @@ ShadingOptions shading_options(Quality quality) {
       break;
     case Quality::accurate:
       options.specular = {SpecularForm::moments, kMaxTaps, kTailLobes};
-      options.environment_taps = 9;
+      options.environment_taps = 15;
       options.ladder_reach = 2;
       break;
   }
